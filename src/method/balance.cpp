@@ -89,16 +89,27 @@ Vector unbalanced_load(const NodeLaws &laws, const Matrix &held, const Vector &l
   return left.norm() > round_off * terms.norm() ? left : Vector::Zero(load.size());
 }
 
+Vector forces_on_motions(const NodeLaws &laws, const Matrix &held, const Vector &terms,
+                         const Vector &x) {
+  Vector sizes = x.cwiseAbs();
+  for (Index node = 0; node < laws.nodes(); ++node)
+    for (Index t = 0; laws.has_tangent(node) && t < laws.tangents; ++t) {
+      double &size = sizes[laws.tangent[node] + t];
+      size = std::max(size, laws.bound[node].coefficient * std::abs(x[laws.normal[node]]));
+    }
+  return terms + held.cwiseAbs().transpose() * sizes;
+}
+
 Balance find_balance(Vector beta, const std::function<SpringState(const Vector &beta)> &lengths) {
   constexpr int most_solves = 100;
-  constexpr double tolerance = 1e-12, round_off = 1e-10, farthest = 1e12;
-  // A rate of 0.95 and less is contact that gives way, where acceleration ends in a few solves.
-  constexpr double in_flight = 0.04, longest = 1e4; // changes, and jumps, over the excess
+  constexpr double tolerance = 1e-12, round_off = 1e-10, farthest = 1e10;
+  // Changes of the excess, and jumps, over it.
+  constexpr double constant = 1e-6, weak = 0.04, longest = 1e4;
   Balance result;
   Anderson anderson(beta.size());
   std::vector<Vector> images;
-  Vector last;
-  double step = 1, least = 0;
+  Vector last, tried_at;
+  double step = 1, least = 0, tried = std::numeric_limits<double>::infinity();
   while (result.solves < most_solves) {
     const SpringState state = lengths(beta);
     ++result.solves;
@@ -107,15 +118,24 @@ Balance find_balance(Vector beta, const std::function<SpringState(const Vector &
     result.excess = state.lengths - beta;
     const double size = result.excess.norm();
     const bool stalls = result.solves > 1 && size > 0.5 * before;
-    // Where nothing touches, the force of the springs moves by the same again and again.
-    const bool flies =
-        size > 0 && last.size() > 0 && (result.excess - last).norm() <= in_flight * size;
+    // Where nothing touches, the force of the springs moves by the same again and again. Where what
+    // touches is much softer than they are, it does nearly so: there acceleration is tried first.
+    const double change = last.size() > 0 ? (result.excess - last).norm() : size;
+    const bool hardly = size > 0 && change <= weak * size;
+    bool flies = hardly && !(step == 1 && change > constant * size && size < 0.5 * tried);
     const double resolved =
         std::numeric_limits<double>::epsilon() * beta.norm(); // of lengths - beta
     result.converged = !flies && resolved <= round_off * state.scale &&
                        size <= (stalls ? round_off : tolerance) * state.scale;
-    if (result.converged || !(step < farthest)) return result;
+    result.flies = !(step < farthest);
+    if (result.converged || result.flies) return result;
     least = result.solves == 1 ? size : std::min(least, size);
+    if (tried_at.size() > 0 && !(size < 0.5 * tried)) {
+      beta = tried_at;
+      result.excess = last;
+      flies = true;
+    }
+    tried_at.resize(0);
     step = flies ? 4 * step : 1;
     last = result.excess;
     if (flies) {
@@ -123,6 +143,10 @@ Balance find_balance(Vector beta, const std::function<SpringState(const Vector &
       images.clear();
       beta += step * result.excess;
       continue;
+    }
+    if (hardly) {
+      tried = size;
+      tried_at = beta;
     }
     images.push_back(state.lengths);
     const Vector shares = anderson.combine(result.excess);

@@ -41,6 +41,8 @@ Vector start_of(const ReducedModel &model, const Scene &scene, const FullMu &mu)
 ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, const Scene &scene,
                              const FullMu &mu) {
   if (model.body.springs.size() == 0) return method.solve(mu, {});
+  const std::string unheld =
+      "a body that contact alone holds is pushed where no contact and no friction can hold it";
   const Vector start = start_of(model, scene, mu);
   ReducedAnswer answer;
   int iterations = 0;
@@ -53,14 +55,13 @@ ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, con
     const FreeMotions &motions = *answer.motions;
     if (iterations == answer.iterations &&
         unbalanced_load(motions.laws, motions.held, motions.load, motions.terms).norm() > 0)
-      throw failure("a body that contact alone holds is pushed where no contact and no friction "
-                    "can hold it");
+      throw failure(unheld);
     // Their lengths are beta and what forces leave, as A_N^-1 springs are rigid motions.
     return SpringState{
         beta + motions.load - motions.held.transpose() * answer.lambda,
-        motions.terms.maxCoeff() +
-            (motions.held.cwiseAbs().transpose() * answer.lambda.cwiseAbs()).maxCoeff()};
+        forces_on_motions(motions.laws, motions.held, motions.terms, answer.lambda).maxCoeff()};
   });
+  if (balance.flies) throw failure(unheld);
   if (!balance.converged)
     throw failure("the forces on a body that contact alone holds do not balance in " +
                   std::to_string(balance.solves) +

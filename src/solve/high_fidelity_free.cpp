@@ -43,11 +43,14 @@ MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, const Vec
     result = run(mu, op, slip);
     iterations += result.iterations;
     last_ = solved(mu, result);
-    const Vector forces = terms + held.cwiseAbs().transpose() * result.lambda.cwiseAbs();
+    const Vector forces = forces_on_motions(all.laws, held, terms, result.lambda);
     return SpringState{spring_lengths(bodies, result.free_u.get()), forces.maxCoeff() / stiffness};
   });
   last_.reset();
   problem_.relax_springs(Vector::Zero(start.size()));
+  if (balance.flies)
+    throw failure(describe(bodies, dim, lu_solve(lengths, balance.excess)) +
+                  ", and is pushed on where no contact and no friction can hold it");
   if (!balance.converged)
     throw failure("the forces on bodies that contact alone holds do not balance in " +
                   std::to_string(balance.solves) +

@@ -31,6 +31,10 @@ FEW = {
 if shutil.which("gmsh"):  # which meshes geometries
     FEW |= {"bolted_flange": ["-train", "random:12:1", "-set", "mesh.set.edges=15"],
             "seal": ["-train", "random:12:1", "-set", "mesh.set.edges=40"]}
+    FEW |= {name: ["-train", "random:12:1", "-set", "mesh.set.edges=10", "-radius", "7"]
+            for name in ("bracket", "bracket/guided")}
+    FEW |= {name: ["-train", "random:12:1", "-set", "mesh.set.edges=30", "-pull", "0,600"]
+            for name in ("joint", "joint/tightening")}
 # Of the answer itself, or round-off: not what is asked.
 CHECKS = ("seconds", "iterations", "kkt_residual", "quadrature_residual", "friction_violation",
           "load_steps", "contraction", "training", "max_penetration")

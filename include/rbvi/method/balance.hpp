@@ -25,6 +25,7 @@ struct Balance {
   Vector beta, excess; ///< excess: lengths - beta
   int solves = 0;
   bool converged = false;
+  bool flies = false; ///< ever further, under a load that nothing takes up
 };
 
 /// `lengths`: solves the contact problem with springs relaxed at beta; called with the last beta
@@ -42,5 +43,9 @@ Matrix loose_motions(const NodeLaws &laws, const Matrix &held, const Vector &x);
 /// can, thresholds not looked at. `terms`: the sums of the sizes of what the load is made of.
 Vector unbalanced_load(const NodeLaws &laws, const Matrix &held, const Vector &load,
                        const Vector &terms);
+/// The sizes of all forces on the free motions, friction as large as pressures allow: what their
+/// sum has round-off of.
+Vector forces_on_motions(const NodeLaws &laws, const Matrix &held, const Vector &terms,
+                         const Vector &x);
 
 } // namespace rbvi
