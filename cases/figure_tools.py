@@ -87,15 +87,18 @@ PREFIXES = {-9: "n", -6: "u", -3: "m", -2: "c", -1: "d", 0: "", 3: "k", 6: "M", 
 
 def use_units(source):
     """Those of a run, or of a VTU file: the units of the case, of the international system where it
-    declares none."""
-    if source.suffix == ".vtu":
-        if source.is_file():
+    declares none. What cannot be read is told where it is drawn."""
+    try:
+        if source.suffix == ".vtu":
             units = read_grid(source).units
             UNITS["length"] = units["points"]
             UNITS["stress"] = units.get("von_mises", UNITS["stress"])
+            return
+        with h5py.File(model_of(source), "r") as model:
+            lines = dict(zip(*(texts_in(model, "scene/functions/" + what)
+                               for what in ("names", "values"))))
+    except (Missing, OSError, KeyError):
         return
-    with h5py.File(model_of(source), "r") as model:
-        lines = dict(zip(*(texts_in(model, "scene/functions/" + what) for what in ("names", "values"))))
     length, force = map(int, lines.get(":units", "0 0").split()[:2])
     for name, unit, power in (("length", "m", length), ("stress", "Pa", force - 2 * length)):
         UNITS[name] = PREFIXES.get(power, f"1e{power} ") + unit
