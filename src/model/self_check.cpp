@@ -107,14 +107,15 @@ void print_self_check(std::ostream &out, const SelfCheck &check, const Parameter
   out << '\n';
   if (check.unanswered > 0) out << "  no answer at " << check.reason << '\n';
   if (check.unanswered > 0)
-    out << "  reduce again with more training parameters (-train), or a smaller box\n";
+    out << "  where rbvi solve has an answer, reduce again with more training parameters (-train); "
+           "where it has none either, take a smaller box\n";
   else if (!check.answered())
     out << "  residuals above 1e-10: the laws are met to that only; reduce again with smaller "
            "tolerances, or -multiplier_reduction condensed where the model has another\n";
   if (check.unanswered < check.queries && !check.admissible())
     out << "  bodies penetrate, or friction exceeds its bound, by more than 2 % of these scales: "
-           "the model does not know what happens there; reduce again with more training "
-           "parameters\n";
+           "where rbvi solve does not leave that, too, the model does not know what happens: reduce "
+           "again with more training parameters; where it does, refine the mesh\n";
 }
 
 } // namespace rbvi
