@@ -1,5 +1,7 @@
 #include "rbvi/contact/surfaces.hpp"
 
+#include "rbvi/core/text.hpp"
+
 #include <cmath>
 
 namespace rbvi {
@@ -115,6 +117,62 @@ const Maker<Surface> disk_maker{"disk", 1, [](const Stored &of) {
                                                        made<Coefficient>(part(of, "radius")));
                                 }};
 
+/// What phi is at a point.
+struct Level {
+  double value, slope;
+  Point normal; ///< towards larger values
+};
+
+/// The next point of phi = 0, by Newton's method for its foot and its distance.
+class LevelSet {
+public:
+  explicit LevelSet(std::function<PointMap> phi) : phi_(std::move(phi)) {}
+
+  SurfacePoint operator()(const FullMu &mu, const Point &y) const {
+    constexpr int most_steps = 60;
+    Point foot = y;
+    for (int step = 0; step < most_steps; ++step) {
+      const Level at = level(mu, foot);
+      const Point tau{-at.normal[1], at.normal[0], 0}, way = y - foot;
+      const double distance = dot(way, at.normal), bend = curvature(mu, foot, at, tau);
+      const double along = dot(way, tau) / std::max(0.1, 1 + bend * distance);
+      const Point move = along * tau - at.value / at.slope * at.normal;
+      foot = foot + move;
+      // What is left is of the square of this, but for the differences in the curvature.
+      if (!(norm(move) > 1e-13 * (norm(foot) + norm(way)))) {
+        const double stretch = 1 + bend * distance;
+        return {distance, at.normal, stretch > 0 ? bend / stretch : 0};
+      }
+    }
+    throw failure("no point of the level set is found next to (" + short_number(y[0]) + ", " +
+                  short_number(y[1]) + "): is it far away, or has a corner there?");
+  }
+
+private:
+  Level level(const FullMu &mu, const Point &x) const {
+    const Point value = phi_(mu, x); // and its gradient
+    const double slope = std::hypot(value[1], value[2]);
+    if (!(slope > 0) || !std::isfinite(value[0] / slope))
+      throw failure("the level set of a rigid surface has no gradient at (" + short_number(x[0]) +
+                    ", " + short_number(x[1]) + ")");
+    return {value[0], slope, {value[1] / slope, value[2] / slope, 0}};
+  }
+  /// Of the level curve, by differences: how its normal turns along it.
+  double curvature(const FullMu &mu, const Point &x, const Level &at, const Point &tau) const {
+    const double step = 1e-5 * std::max(norm(x), std::abs(at.value / at.slope));
+    if (!(step > 0)) return 0;
+    const Level before = level(mu, x - step * tau), after = level(mu, x + step * tau);
+    return dot(after.normal - before.normal, tau) / (2 * step);
+  }
+
+  std::function<PointMap> phi_;
+};
+
+const Maker<Surface> level_set_maker{"level_set", 1,
+                                     [](const Stored &of) -> std::function<Surface> {
+                                       return LevelSet(made<PointMap>(part(of, "phi")));
+                                     }};
+
 std::function<PointMap> normal_function(const std::function<Surface> &surface,
                                         const std::function<PointMap> &at) {
   return [=](const FullMu &mu, const Point &x) { return -1.0 * surface(mu, at(mu, x)).normal; };
@@ -194,6 +252,11 @@ Named<Surface> disk_surface(const Named<Coefficient> &x, const Named<Coefficient
                           {{"x", x.record}, {"y", y.record}, {"radius", radius.record}});
 }
 
+Named<Surface> level_set(const Named<PointMap> &value_and_gradient) {
+  return level_set_maker.named(LevelSet(value_and_gradient), {},
+                               {{"phi", value_and_gradient.record}});
+}
+
 Named<PointMap> normal_of_surface(const Named<Surface> &surface, const Named<PointMap> &at) {
   return normal_maker.named(normal_function(surface, at), {},
                             {{"surface", surface.record}, {"at", at.record}});
@@ -207,8 +270,8 @@ Named<PointValue> gap_to_surface(const Named<Surface> &surface, const Named<Poin
 }
 
 FunctionLibrary surface_functions() {
-  return {on_circles_maker, circle_normals_maker, composed_maker,
-          disk_maker,       normal_maker,         gap_maker};
+  return {on_circles_maker, circle_normals_maker, composed_maker, disk_maker,
+          level_set_maker,  normal_maker,         gap_maker};
 }
 
 } // namespace rbvi

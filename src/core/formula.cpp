@@ -36,9 +36,9 @@ Formula without_idle(const Formula &formula) {
 }
 
 /// The text of the values, the lets and the names, with the positions of the parameters.
-Record record_of_formula(const Formula &formula) {
+Record record_of_formula(const Formula &formula, const std::string &name = "expression") {
   const Formula own = without_idle(formula);
-  Record record{"expression", version};
+  Record record{name, version};
   for (std::size_t i = 0; i < own.values.size(); ++i)
     record.texts["value_" + std::to_string(i)] = own.values[i].text();
   for (std::size_t i = 0; i < own.lets.size(); ++i)
@@ -64,8 +64,9 @@ std::vector<std::string> first(long count) {
   return {coordinates.begin(), coordinates.begin() + count};
 }
 
-/// `at`: names that the values may have beside those of parameters.
-BoundProgram program_of(const Record &record, const std::vector<std::string> &at) {
+/// `at`: names that the values may have beside those of parameters; `by`: of gradients.
+BoundProgram program_of(const Record &record, const std::vector<std::string> &at,
+                        const std::vector<std::string> &by = {}) {
   const std::vector<std::string> names = split(text(record, "parameters"), ' ');
   if (names.size() != numbers(record, "positions").size() || names.size() > most_parameters)
     throw bad_input("a function of the file has other parameters than positions of them");
@@ -78,7 +79,7 @@ BoundProgram program_of(const Record &record, const std::vector<std::string> &at
   std::vector<Expression> values;
   for (const std::string &value : texts_of(record, "value"))
     values.push_back(parse_expression(value));
-  return bound_program(lets, values, names, at, {});
+  return bound_program(lets, values, names, at, by);
 }
 
 /// Evaluates the values of a record at a point.
@@ -86,8 +87,8 @@ class Evaluator {
 public:
   /// Throws bad_input unless it has `least` to `most` values.
   Evaluator(const Record &record, const std::vector<std::string> &at, std::size_t least,
-            std::size_t most)
-      : size_(texts_of(record, "value").size()), program_(program_of(record, at)) {
+            std::size_t most, const std::vector<std::string> &by = {})
+      : size_(texts_of(record, "value").size()), program_(program_of(record, at, by)) {
     for (const double position : numbers(record, "positions"))
       positions_.push_back(static_cast<std::size_t>(position));
     if (size_ < least || size_ > most)
@@ -101,12 +102,21 @@ public:
   void operator()(const FullMu &mu, const double *at, double *results,
                   std::size_t count = 1) const {
     std::array<double, most_parameters> parameters; // not initialised
-    for (std::size_t i = 0; i < positions_.size(); ++i)
-      parameters[i] = mu.at(positions_[i]);
+    put(mu, parameters);
     program_.values(parameters.data(), at, count, results);
+  }
+  /// The gradients stand behind the values.
+  void with_gradient(const FullMu &mu, const double *at, double *results) const {
+    std::array<double, most_parameters> parameters;
+    put(mu, parameters);
+    program_.values_and_gradients(parameters.data(), at, 1, results, results + size_);
   }
 
 private:
+  void put(const FullMu &mu, std::array<double, most_parameters> &parameters) const {
+    for (std::size_t i = 0; i < positions_.size(); ++i)
+      parameters[i] = mu.at(positions_[i]);
+  }
   std::size_t size_;
   BoundProgram program_;
   std::vector<std::size_t> positions_;
@@ -151,6 +161,15 @@ const Maker<PointMap> expression_map_maker{"expression", version,
                                            [](const Record &of) -> std::function<PointMap> {
                                              return ExpressionMap{Evaluator(of, first(3), 1, 3)};
                                            }};
+
+const Maker<PointMap> gradient_maker{
+    "expression_with_gradient", version, [](const Record &of) -> std::function<PointMap> {
+      return [own = Evaluator(of, first(3), 1, 1, first(2))](const FullMu &mu, const Point &x) {
+        Point value{};
+        own.with_gradient(mu, x.data(), value.data());
+        return value;
+      };
+    }};
 
 const Maker<Traction> expression_traction_maker{
     "expression", version, [](const Record &of) -> std::function<Traction> {
@@ -323,6 +342,11 @@ Named<PointMap> point_map_of(const Formula &components) {
   return function_of(expression_map_maker, record_of_formula(components));
 }
 
+Named<PointMap> value_and_gradient_of(const Formula &value) {
+  check_names(value, first(3));
+  return function_of(gradient_maker, record_of_formula(value, gradient_maker.name));
+}
+
 Named<Traction> traction_of(const Formula &components) {
   check_names(components, coordinates);
   return function_of(expression_traction_maker, record_of_formula(components));
@@ -361,21 +385,15 @@ std::vector<Point> images(const std::function<PointMap> &map, const FullMu &mu,
   return result;
 }
 
-const std::vector<std::string> &output_fields() {
-  static const std::vector<std::string> names{
-      "x",  "y",  "ux",       "uy",       "pressure", "gap",      "tangential", "slip",         "u",
-      "nx", "ny", "sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "von_mises",  "strain_energy"};
-  return names;
-}
-
 Named<FieldValues> field_values_of(const Formula &values) {
   check_names(values, output_fields());
   return function_of(expression_fields_maker, record_of_formula(values));
 }
 
 FunctionLibrary formula_functions() {
-  return {expression_coefficient_maker, expression_value_maker, expression_map_maker,
-          expression_traction_maker,    expression_check_maker, expression_fields_maker};
+  return {
+      expression_coefficient_maker, expression_value_maker, expression_map_maker,   gradient_maker,
+      expression_traction_maker,    expression_check_maker, expression_fields_maker};
 }
 
 } // namespace rbvi

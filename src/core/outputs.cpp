@@ -1,6 +1,7 @@
 #include "rbvi/core/outputs.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/formula.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/core/text.hpp"
 
@@ -10,6 +11,13 @@
 #include <limits>
 
 namespace rbvi {
+
+const std::vector<std::string> &output_fields() {
+  static const std::vector<std::string> names{
+      "x",  "y",  "ux",       "uy",       "pressure", "gap",      "tangential", "slip",         "u",
+      "nx", "ny", "sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "von_mises",  "strain_energy"};
+  return names;
+}
 
 const std::vector<OutputColumn> &output_columns() {
   using enum OutputKind;

@@ -1,5 +1,6 @@
 #include "rbvi/io/parameter_sets.hpp"
 
+#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/core/text.hpp"
@@ -199,6 +200,10 @@ ParameterReader::ParameterReader(const ParameterSpace &space, const std::string 
     next_ = grid(space, text.substr(5));
   } else if (text.starts_with("random:")) {
     next_ = random_set(space, text.substr(7));
+  } else if (text == "corners") {
+    next_ = [set = corners_and_faces(space), k = std::size_t{0}]() mutable {
+      return k < set.size() ? std::optional<Mu>(set[k++]) : std::nullopt;
+    };
   } else if (!text.empty() && text.find_first_not_of("0123456789") == std::string::npos) {
     next_ = random_set(space, text + ":1");
   } else {
@@ -212,11 +217,16 @@ ParameterReader::ParameterReader(const ParameterSpace &space, const std::string 
 
 std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text,
                           bool allow_outside) {
-  if (text == "-") throw bad_input("a set cannot come from standard input here: name a CSV file");
-  ParameterReader reader(space, text, allow_outside);
+  const std::string plus = " + ";
   std::vector<Mu> set;
-  while (std::optional<Mu> mu = reader.next())
-    set.push_back(std::move(*mu));
+  for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + plus.size()) {
+    end = text.find(plus, begin);
+    const std::string part = trimmed(text.substr(begin, end - begin));
+    if (part == "-") throw bad_input("a set cannot come from standard input here: name a CSV file");
+    ParameterReader reader(space, part, allow_outside);
+    while (std::optional<Mu> mu = reader.next())
+      set.push_back(std::move(*mu));
+  }
   return set;
 }
 

@@ -68,7 +68,8 @@ const std::vector<OnlineOption> &online_options() {
   static const std::vector<OnlineOption> options{
       {"mu", "VALUES", "one answer: 0.18,0.02,-0.01 or radius=0.18,center_x=0.02", &Arguments::mu},
       {"queries", "SET",
-       "one row per mu: a CSV file (a column id is handed on), grid:5,5,5, random:COUNT:SEED or - "
+       "one row per mu: a CSV file (a column id is handed on), grid:5,5,5, random:COUNT:SEED, "
+       "corners or - "
        "(a CSV table on standard input)",
        &Arguments::queries},
       {"out", "FILE", "the table as CSV (standard output without it, or as -)", &Arguments::out},

@@ -139,6 +139,10 @@ const std::vector<CaseKey> all_keys{
      "two bodies: edges intersected, or Gauss points of the first alone"},
     {"contact.*.against", "disk", "table", "a rigid disk"},
     {"contact.*.against", "plane", "table", "a rigid half-plane"},
+    {"contact.*.against", "level_set", "expression",
+     "in parameters, x and y: something rigid is where it is negative, such as y - height*cos(x), "
+     "a "
+     "ground below a graph; best of slopes near 1"},
     {"contact.*.against.disk", "center", "[expression, expression]", "", true, "m"},
     {"contact.*.against.disk", "radius", "expression", "", true, "m"},
     {"contact.*.against.plane", "normal", "[number, number]",

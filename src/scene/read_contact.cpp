@@ -116,20 +116,22 @@ RigidContact at_rest(const CaseNode &node, const Side &side, const Named<Surface
   return rigid_contact(support);
 }
 
-RigidContact disk_contact(Reader &reader, const CaseNode &node, const CaseNode &disk,
-                          const Side &side, Scene &scene) {
-  check_used(node, "with a disk",
+RigidContact surface_contact(Reader &reader, const CaseNode &node, const Named<Surface> &surface,
+                             const Side &side, Scene &scene) {
+  check_used(node, "with a disk or a level set",
              {"at", "against", "normal", "gap", "gap_from", "friction", "kinematics", "formulation",
               "nitsche_gamma0", "lumped"});
-  const std::vector<Expression> centre = components_in(reader, entry(disk, "center"));
-  if (centre.size() != 2) throw bad_input("the center of a disk is [x, y]");
-  const Formula radius = formula_in(reader, entry(disk, "radius"));
-  const Named<Surface> surface =
-      disk_surface(coefficient_of(formula_of(reader, {centre[0]})),
-                   coefficient_of(formula_of(reader, {centre[1]})), coefficient_of(radius));
   const Friction friction = friction_in(reader, node, scene);
   return is_large(node) ? following(node, side, surface, friction)
                         : at_rest(node, side, surface, friction, scene);
+}
+
+Named<Surface> disk_in(Reader &reader, const CaseNode &disk) {
+  const std::vector<Expression> centre = components_in(reader, entry(disk, "center"));
+  if (centre.size() != 2) throw bad_input("the center of a disk is [x, y]");
+  const Formula radius = formula_in(reader, entry(disk, "radius"));
+  return disk_surface(coefficient_of(formula_of(reader, {centre[0]})),
+                      coefficient_of(formula_of(reader, {centre[1]})), coefficient_of(radius));
 }
 
 RigidContact plane_contact(Reader &reader, const CaseNode &node, const CaseNode &table,
@@ -158,14 +160,22 @@ RigidContact plane_contact(Reader &reader, const CaseNode &node, const CaseNode 
 
 ContactRecipe with_something_rigid(Reader &reader, const CaseNode &node, const CaseNode &against,
                                    Scene &scene) {
-  const CaseNode *disk = against.find("disk"), *plane = against.find("plane");
-  if ((disk == nullptr) == (plane == nullptr))
-    throw bad_input("against: a boundary, {disk: {...}} or {plane: {...}}");
+  const CaseNode *disk = against.find("disk"), *plane = against.find("plane"),
+                 *level = against.find("level_set");
+  if ((disk != nullptr) + (plane != nullptr) + (level != nullptr) != 1)
+    throw bad_input(
+        "against: a boundary, {disk: {...}}, {plane: {...}} or {level_set: EXPRESSION}");
   if (scene.axisymmetric && yes_or(node, "lumped", false))
     throw bad_input("vertex quadrature sees nothing on the axis: leave out lumped");
   const Side side = side_of(reader, entry(node, "at").value, scene);
-  const RigidContact rigid = disk != nullptr ? disk_contact(reader, node, *disk, side, scene)
-                                             : plane_contact(reader, node, *plane, side, scene);
+  const RigidContact rigid =
+      plane != nullptr
+          ? plane_contact(reader, node, *plane, side, scene)
+          : surface_contact(reader, node,
+                            disk != nullptr
+                                ? disk_in(reader, *disk)
+                                : level_set(value_and_gradient_of(formula_in(reader, *level))),
+                            side, scene);
   if (choice_or(node, "formulation", "mixed", {"mixed", "nitsche"}) == "mixed")
     return by_multipliers(rigid);
   if (std::ranges::any_of(scene.materials,

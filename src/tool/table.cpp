@@ -48,7 +48,8 @@ std::vector<Option> of_runs() {
            otherwise("the scene's",
                      text("train", OptionKind::set, "set", RBVI_AT(train),
                           "parameters of the training set: grid:5,5,5 | random:COUNT:SEED | COUNT "
-                          "(seed 1) | file.csv with a header of names")),
+                          "(seed 1) | corners (and centres of faces of the box) | file.csv with a "
+                          "header of names; several with ' + ' between them")),
            "training"),
       otherwise("the scene's", text("valid", OptionKind::set, "set", RBVI_AT(valid),
                                     "parameters of the validation set, given as -train is; verify "

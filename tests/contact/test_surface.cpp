@@ -3,7 +3,9 @@
 #include "rbvi/contact/contact.hpp"
 #include "rbvi/contact/registry.hpp"
 #include "rbvi/contact/support.hpp"
+#include "rbvi/contact/surfaces.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/formula.hpp"
 #include "support_scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -259,6 +261,48 @@ TEST(RigidSurface, UndeformedIsMinusTheMotion) {
   EXPECT_TRUE(has_curvature(contact));
   const Vector state = undeformed(contact, of.scene, skew);
   EXPECT_EQ(state, nodal(of.curve, [](const Point &) { return Point{0, skew[0], 0}; }));
+}
+
+/// phi as an expression in x, y and the parameters a and b.
+Named<Surface> level(const std::string &phi) {
+  return level_set(value_and_gradient_of({{parse_expression(phi)}, {}, {"a", "b"}}));
+}
+
+TEST(LevelSet, OfADiskIsTheDisk) {
+  for (const std::string phi : {"hypot(x - b, y + 2.01) - 1", "(x - b)^2 + (y + 2.01)^2 - 1"}) {
+    const Named<Surface> surface = level(phi);
+    for (const Point &y : {Point{0.3, -0.9, 0}, Point{-0.4, -1.2, 0}, Point{0.07, -0.2, 0}}) {
+      const SurfacePoint known = disk_below(skew, y), found = surface(skew, y);
+      EXPECT_NEAR(found.distance, known.distance, 1e-13) << phi;
+      EXPECT_NEAR(found.normal[0], known.normal[0], 1e-13);
+      EXPECT_NEAR(found.normal[1], known.normal[1], 1e-13);
+      EXPECT_NEAR(found.curvature, known.curvature, 1e-8);
+    }
+  }
+}
+
+/// The way to the next point is along the normal there, from either side.
+TEST(LevelSet, NextPointsOfAGraph) {
+  const Named<Surface> surface = level("y - a*cos(3*x + b)");
+  const FullMu mu{0.2, 0.4};
+  for (double x = -1; x <= 1; x += 0.1)
+    for (const double d : {-0.15, -1e-3, 0.0, 1e-6, 0.1, 0.3}) {
+      const double slope = -3 * mu[0] * std::sin(3 * x + mu[1]), stretch = std::hypot(1, slope),
+                   bend = -(-9 * mu[0] * std::cos(3 * x + mu[1])) / std::pow(stretch, 3);
+      if (1 + bend * d < 0.3) continue; // near the centre of curvature
+      const Point n{-slope / stretch, 1 / stretch, 0},
+          y = Point{x, mu[0] * std::cos(3 * x + mu[1]), 0} + d * n;
+      const SurfacePoint found = surface(mu, y);
+      EXPECT_NEAR(found.distance, d, 1e-12) << x;
+      EXPECT_NEAR(norm(found.normal - n), 0, 1e-11);
+      EXPECT_NEAR(found.curvature, bend / (1 + bend * d), 1e-6);
+    }
+}
+
+TEST(LevelSet, IsRefusedWhereItHasNoSurface) {
+  EXPECT_THROW(level("1 + x^2")({0, 0}, {0.3, 0, 0}), Error);
+  EXPECT_THROW(level("a")({0, 0}, {0.3, 0, 0}), Error);
+  EXPECT_THROW(level("log(y)")({0, 0}, {0.3, -1, 0}), Error);
 }
 
 } // namespace

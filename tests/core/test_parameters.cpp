@@ -1,5 +1,6 @@
 #include "refuses.hpp"
 
+#include "rbvi/core/box.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 
 #include <cmath>
@@ -163,6 +164,22 @@ TEST_F(CsvSet, IsReadRowByRowAndGoesOnBehindAWrongOne) {
   EXPECT_TRUE(is_stream("-"));
   EXPECT_TRUE(is_stream("/dev/null"));
   EXPECT_FALSE(is_stream("grid:2,2"));
+}
+
+TEST(ParameterSet, OfCornersAndOfSeveralSets) {
+  ParameterSpace space;
+  space.all = {{"a", "", 0, 1, 0}, {"b", "", 2, 4, 2}};
+  space.free = {0, 1};
+  const std::vector<Mu> corners = parse_set(space, "corners");
+  EXPECT_EQ(corners, corners_and_faces(space));
+  ASSERT_EQ(corners.size(), 8U);
+  std::vector<Mu> all = corners;
+  for (const Mu &mu : parse_set(space, "random:3:7"))
+    all.push_back(mu);
+  all.push_back({0.5, 3});
+  EXPECT_EQ(parse_set(space, "corners + random:3:7 + grid:1,1"), all);
+  EXPECT_THROW(parse_set(space, "corners + "), Error);
+  EXPECT_THROW(parse_set(space, "corners + -"), Error);
 }
 
 TEST(ParameterReader, GivesTheSetsOneByOne) {

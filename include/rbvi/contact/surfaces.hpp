@@ -26,6 +26,11 @@ Named<PointMap> composed(const Named<PointMap> &outer, const Named<PointMap> &in
 Named<Surface> disk_surface(const Named<Coefficient> &x, const Named<Coefficient> &y,
                             const Named<Coefficient> &radius);
 
+/// Where a function is positive, value_and_gradient = (phi, phi_x, phi_y) (core/formula.hpp). The
+/// next point of phi = 0 is looked for from the point itself, along the gradient. Evaluation throws
+/// failure where none is found, or phi has no gradient.
+Named<Surface> level_set(const Named<PointMap> &value_and_gradient);
+
 /// Unit normal, out of the body, of a surface that the point at(mu, x) faces: -(gradient of the
 /// distance).
 Named<PointMap> normal_of_surface(const Named<Surface> &surface, const Named<PointMap> &at);

@@ -28,6 +28,8 @@ Named<PointValue> point_value_of(const Formula &value);
 /// Components that are left out are 0.
 Named<PointMap> point_map_of(const Formula &components);
 Named<Traction> traction_of(const Formula &components);
+/// A value and its derivatives by x and y.
+Named<PointMap> value_and_gradient_of(const Formula &value);
 /// What outputs may name beside parameters, in the order of output_fields(); what there is not at
 /// some place is NaN there. x, y: where the map takes the point; ux, uy, of a membrane u: the
 /// displacement, with the motion; of contact pressure, gap, tangential stress and slip; on

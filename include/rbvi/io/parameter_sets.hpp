@@ -11,8 +11,8 @@
 namespace rbvi {
 
 /// Reads "grid:5,5,5" (box ends included, last parameter fastest; a count of 1 is the middle),
-/// "random:200:seed" or "200" for seed 1 (uniform, the same on every machine), or the name of a CSV
-/// file with a header of parameter names, in any order; columns that a table of rbvi has beside
+/// "random:200:seed" or "200" for seed 1 (uniform, the same on every machine), "corners"
+/// (corners_and_faces), several of these with " + " between them, or the name of a CSV file with a header of parameter names, in any order; columns that a table of rbvi has beside
 /// them (is_table_column) are passed over. Every mu is checked. Throws bad_input, naming the line.
 std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text,
                           bool allow_outside = false);
