@@ -275,9 +275,8 @@ bool is_partial(double weight, double whole) {
 }
 
 double ends_in_contact(const PairMultipliers &multipliers, const CurveShape &slave,
-                       const HatWeights &hats, const Vector &weights, const Vector &lambda,
-                       double least, const std::vector<std::array<bool, 2>> &closed) {
-  const Vector whole = multipliers.whole_weights(hats);
+                       const Vector &shares, const Vector &lambda, double least,
+                       const std::vector<std::array<bool, 2>> &closed) {
   double ends = 0;
   for (std::size_t k = 0; k < slave.pieces.size(); ++k) {
     const CurveChain &piece = slave.pieces[k];
@@ -287,13 +286,13 @@ double ends_in_contact(const PairMultipliers &multipliers, const CurveShape &sla
     const auto carries_from = [&](Index first, Index step) {
       const auto inside = [&](Index row) { return row >= begin && row <= end; };
       Index row = first;
-      while (inside(row) && !(weights[row] > round_off * whole[row]))
+      while (inside(row) && !(shares[row] > round_off))
         row += step;
       if ((row == first ? closed[k] : closed.back())[step > 0 ? 0 : 1] || !inside(row)) return 0.0;
       do {
         if (lambda[row] > least) return 1.0;
         row += step;
-      } while (inside(row) && is_partial(weights[row], whole[row]));
+      } while (inside(row) && is_partial(shares[row], 1));
       return 0.0;
     };
     ends += carries_from(begin, 1) + carries_from(end, -1);

@@ -223,8 +223,10 @@ void PairInterface::outputs(const FullMu &mu, const ContactOperators &operators,
   pressure_outputs(scene_.mirror_images, operators.weights, pressure, least, outputs);
   const HatWeights hats =
       curves(images(scene_.map, mu, mesh_.points)).slave.hats(scene_.axisymmetric);
-  outputs.ends_in_contact = ends_in_contact(multipliers_, *slave_, hats, operators.weights,
-                                            pressure, least, closed_ends());
+  const Vector shares =
+      operators.weights.head(count).cwiseQuotient(multipliers_.whole_weights(hats));
+  outputs.ends_in_contact =
+      ends_in_contact(multipliers_, *slave_, shares, pressure, least, closed_ends());
   if (friction())
     friction_outputs(scene_.mirror_images, operators.weights, lambda, bound(mu), outputs);
   if (is_of_heights(pair_)) return;

@@ -39,6 +39,10 @@ std::string counted(long number, const std::string &noun) {
   return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
 }
 
+std::string bytes_text(double bytes) {
+  return bytes < 1e9 ? formatted("%.0f MB", bytes / 1e6) : formatted("%.3g GB", bytes / 1e9);
+}
+
 std::string joined(const std::vector<std::string> &parts, const std::string &separator) {
   std::string text;
   for (std::size_t i = 0; i < parts.size(); ++i)

@@ -77,7 +77,7 @@ Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options, Index c
 
 void Problem::stiffen_springs() {
   const FullMu mu = generic_point(scene_->parameters);
-  sum_up(scene_->a, scene_->parameters, mu, mesh_, dofs_, map_vertices(*scene_, mu, mesh_), a_);
+  sum_up(scene_->a, scene_->parameters, mu, {mesh_, dofs_, map_vertices(*scene_, mu, mesh_)}, a_);
   stiffen(free_, *scene_, mu, a_);
   beta_ = Vector::Zero(motions_of(free_));
   pressed_ = make_vector(dofs_);
@@ -185,8 +185,8 @@ const Operators &Problem::assemble(const Mu &mu, ContactRows rows, const Vector 
   const bool new_a = differs(a_, scene_->a, all), new_f = differs(f_, scene_->f, all);
   if (!a_.made_at || (new_a && a_.mapped) || (new_f && f_.mapped))
     mapped_ = map_vertices(*scene_, all, mesh_);
-  if (new_a) sum_up(scene_->a, scene_->parameters, all, mesh_, dofs_, mapped_, a_);
-  if (new_f) sum_up(scene_->f, scene_->parameters, all, mesh_, dofs_, mapped_, f_);
+  if (new_a) sum_up(scene_->a, scene_->parameters, all, {mesh_, dofs_, mapped_}, a_);
+  if (new_f) sum_up(scene_->f, scene_->parameters, all, {mesh_, dofs_, mapped_}, f_);
   operators_.a = a_.total.get();
   operators_.f = free_.empty() ? f_.total.get() : pressed_.get();
   if (!free_.empty()) relax_springs(beta_);

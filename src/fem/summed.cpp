@@ -90,8 +90,7 @@ Summed<Object> make_summed(const Sum &sum, const ParameterSpace &space, const Me
 
 template <class Object>
 void sum_up(const Sum &sum, const ParameterSpace &space, const FullMu &all_parameters,
-            const Mesh &mesh, const Dofs &dofs, const MappedVertices &mapped,
-            Summed<Object> &summed) {
+            const Domain &domain, Summed<Object> &summed) {
   const std::vector<double> coefficients =
       exact_coefficients(sum, summed.split, space, all_parameters);
   summed.made_at.reset();
@@ -99,7 +98,7 @@ void sum_up(const Sum &sum, const ParameterSpace &space, const FullMu &all_param
     std::vector<WeightedForm> forms;
     for (const int term : summed.split.mapped)
       forms.push_back({&sum[term].form});
-    assemble(forms, all_parameters, mesh, dofs, mapped, summed.mapped.get());
+    assemble(forms, all_parameters, domain.mesh, domain.dofs, domain.mapped, summed.mapped.get());
   }
   const Object total = summed.total.get();
   const bool is_one = total == summed.mapped.get() ||
@@ -116,9 +115,9 @@ void sum_up(const Sum &sum, const ParameterSpace &space, const FullMu &all_param
 
 template Summed<Mat> make_summed(const Sum &, const ParameterSpace &, const Mesh &, const Dofs &);
 template Summed<Vec> make_summed(const Sum &, const ParameterSpace &, const Mesh &, const Dofs &);
-template void sum_up(const Sum &, const ParameterSpace &, const FullMu &, const Mesh &,
-                     const Dofs &, const MappedVertices &, Summed<Mat> &);
-template void sum_up(const Sum &, const ParameterSpace &, const FullMu &, const Mesh &,
-                     const Dofs &, const MappedVertices &, Summed<Vec> &);
+template void sum_up(const Sum &, const ParameterSpace &, const FullMu &, const Domain &,
+                     Summed<Mat> &);
+template void sum_up(const Sum &, const ParameterSpace &, const FullMu &, const Domain &,
+                     Summed<Vec> &);
 
 } // namespace rbvi

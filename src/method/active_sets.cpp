@@ -148,14 +148,14 @@ private:
 } // namespace
 
 FrictionResult solve_by_sets(const SetSolver &solve, const Vector &diagonal, const NodeLaws &laws,
-                             const Vector &start, const FrictionOptions &options,
-                             const LargestOverRanks &largest, bool by_rule) {
+                             const Vector &start, const SetOptions &options) {
   check(laws);
   Vector in_space = Vector::Constant(1, laws.friction() && laws.tangents > 1 ? 1 : 0);
-  if (largest) largest(in_space);
+  if (options.largest) options.largest(in_space);
   if (in_space[0] > 0)
     throw failure("active sets without columns are for friction in two dimensions");
-  return Iteration(solve, diagonal, laws, options, largest).run(start, by_rule);
+  return Iteration(solve, diagonal, laws, options.friction, options.largest)
+      .run(start, options.by_rule);
 }
 
 } // namespace rbvi

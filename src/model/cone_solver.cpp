@@ -112,8 +112,8 @@ void ConeSolver::finish(ReducedAnswer &answer) {
   const double terms = b_scale_ * (b_.cwiseAbs() * answer.u.cwiseAbs()).maxCoeff();
   answer.energy = 0.5 * answer.u.dot(au) - f_.dot(answer.u);
   answer.residual =
-      kkt_residual(at_mu_.restricted(au), at_mu_.restricted(btx), at_mu_.restricted(f_), bu, g_,
-                   answer.lambda, model_.contact.free_modes, terms);
+      kkt_residual({at_mu_.restricted(au), at_mu_.restricted(btx), at_mu_.restricted(f_), bu, g_,
+                    answer.lambda, model_.contact.free_modes, terms});
   answer.least_pressure = active_fraction;
   if (model_.body.springs.size() > 0)
     answer.motions = free_motions_at(at_mu_, b_scale_ * b_, uniform_laws(b_.rows(), 1, {}));

@@ -16,8 +16,8 @@ constexpr double resolved = 1e-4;
 
 } // namespace
 
-double kkt_residual(const Vector &au, const Vector &btx, const Vector &f, const Vector &bu,
-                    const Vector &g, const Vector &x, Index free, double terms) {
+double kkt_residual(const KktTerms &answer) {
+  const auto &[au, btx, f, bu, g, x, free, terms] = answer;
   const auto relative = [](double error, double scale) { return error == 0 ? 0 : error / scale; };
   const double stationarity = relative((au + btx - f).norm(), f.norm() + btx.norm());
   const double scale =

@@ -196,18 +196,6 @@ SampleMesh sample_domain(const Problem &problem, const Sum &sum, const std::vect
   return to_sample_mesh(mesh.dim, mesh.dim + 1, gather_cells(problem.comm(), mine));
 }
 
-/// Of terms that depend on the map: the first mu of the set with each value of the parameters that
-/// the sum depends on, by number.
-std::vector<int> different(const SplitSum &split, const Sum &sum, const ParameterSpace &space,
-                           const std::vector<Mu> &set) {
-  std::set<std::vector<double>> seen;
-  std::vector<int> result;
-  for (std::size_t p = 0; p < set.size() && !split.mapped.empty(); ++p)
-    if (seen.insert(values_of_dependence(sum, expand(space, set[p]))).second)
-      result.push_back(static_cast<int>(p));
-  return result;
-}
-
 /// The keys' values at every mu of a training set, column by column.
 struct Snapshots {
   std::vector<EntryKey> keys;
@@ -272,6 +260,17 @@ std::vector<EntryKey> entries_of_b(const AffineOperators &affine) {
 
 } // namespace
 
+std::vector<int> interpolated_samples(const Sum &sum, const ParameterSpace &space,
+                                      const std::vector<Mu> &set) {
+  std::set<std::vector<double>> seen;
+  std::vector<int> result;
+  const bool none = split_sum(sum, space).mapped.empty();
+  for (std::size_t p = 0; p < set.size() && !none; ++p)
+    if (seen.insert(values_of_dependence(sum, expand(space, set[p]))).second)
+      result.push_back(static_cast<int>(p));
+  return result;
+}
+
 std::vector<RowsOfB> rows_of_b(const AffineOperators &affine, const Problem &problem) {
   const Index dual = problem.dual_size();
   if (affine.b_tangential.size() == 0) return {{affine.b, 0, dual}};
@@ -315,8 +314,8 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
     f_keys.push_back({natural, 0});
   for (PetscInt i = 0; i < op.g.size(); ++i)
     g_keys.push_back({i, 0});
-  Snapshots a(triangle.keys(), different(a_terms.split, scene.a, scene.parameters, training));
-  Snapshots f(f_keys, different(f_terms.split, scene.f, scene.parameters, training)),
+  Snapshots a(triangle.keys(), interpolated_samples(scene.a, scene.parameters, training));
+  Snapshots f(f_keys, interpolated_samples(scene.f, scene.parameters, training)),
       b(nonzero_keys(op.b), without_b ? none : all), g(g_keys, without_b ? none : all);
   for (const int number : all) {
     const auto p = static_cast<std::size_t>(number);

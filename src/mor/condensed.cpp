@@ -3,8 +3,10 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/mor/orthonormal.hpp"
 #include "rbvi/mor/response_space.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/par/progress.hpp"
 #include "rbvi/par/small_svd.hpp"
 #include "rbvi/par/turns.hpp"
 #include "rbvi/solve/complement.hpp"
@@ -136,19 +138,20 @@ Vector blocks_of(const Matrix &h, Index m) {
   return blocks;
 }
 
-/// As few terms as hold the values at all grid points to the tolerance. `values`: (blocks *
-/// `square`) x grid points.
-void compress(const Matrix &values, Index square, double tolerance, CondensedOperator &condensed) {
-  const Index blocks = values.rows() / square;
-  const SmallSvd svd = small_svd(values);
+/// As few terms as hold the values at all grid points, columns * coordinates with orthonormal
+/// columns, to the tolerance. `columns`: (blocks * `square`) x any number.
+void compress(const Matrix &columns, const Matrix &coordinates, Index square, double tolerance,
+              CondensedOperator &condensed) {
+  const Index blocks = columns.rows() / square;
+  const SmallSvd svd = small_svd(coordinates.transpose()); // tall: of no more than its R
   Index count = 1;
   while (count < svd.values.size() && svd.values[count] > 0.1 * tolerance * svd.values[0])
     ++count;
-  condensed.shape = svd.values.head(count).asDiagonal() * svd.right.leftCols(count).transpose();
+  condensed.shape = svd.values.head(count).asDiagonal() * svd.left.leftCols(count).transpose();
   condensed.terms.resize(square, blocks * count);
   for (Index block = 0; block < blocks; ++block)
     condensed.terms.middleCols(block * count, count) =
-        svd.left.block(block * square, 0, square, count);
+        columns.middleRows(block * square, square) * svd.right.leftCols(count);
 }
 
 /// The free parameters at each point of a grid over those of A, the others as in `all_parameters`.
@@ -237,27 +240,66 @@ private:
   std::vector<Mu> ends_;
 };
 
+/// Values at points, a few at a time: a grid has thousands of them, of as many numbers as pairs of
+/// multipliers, in the span of few.
+class SpannedValues {
+public:
+  explicit SpannedValues(double tolerance) : tolerance_(tolerance) {}
+
+  /// At the points that are not there yet. `blocks_at`: a column for each of some mu. Collective.
+  template <class BlocksAt>
+  void add(const std::vector<Mu> &grid, bool reports, BlocksAt &&blocks_at) {
+    constexpr std::size_t width = 16; // points at a time
+    std::vector<Mu> added;
+    std::ranges::copy_if(grid, std::back_inserter(added),
+                         [&](const Mu &mu) { return !known_.contains(mu); });
+    Progress progress("points of the condensed operator", static_cast<int>(added.size()), reports);
+    const double start = MPI_Wtime();
+    for (std::size_t first = 0; first < added.size(); first += width) {
+      const std::size_t end = std::min(first + width, added.size());
+      const std::vector<Mu> part(added.begin() + static_cast<std::ptrdiff_t>(first),
+                                 added.begin() + static_cast<std::ptrdiff_t>(end));
+      const Matrix blocks = blocks_at(part);
+      span_.append(blocks, tolerance_);
+      const Matrix coordinates = span_.coordinates(blocks);
+      for (std::size_t k = 0; k < part.size(); ++k)
+        known_.emplace(part[k], coordinates.col(static_cast<Index>(k)));
+      const double left = static_cast<double>(added.size() - end) / static_cast<double>(end);
+      if (progress.due()) progress.update(static_cast<int>(end), left * (MPI_Wtime() - start));
+    }
+  }
+  const Matrix &columns() const { return span_.columns(); }
+  /// columns() x points.
+  Matrix coordinates_at(const std::vector<Mu> &grid) const {
+    Matrix result = Matrix::Zero(columns().cols(), std::ssize(grid));
+    for (std::size_t k = 0; k < grid.size(); ++k) {
+      const Vector &known = known_.at(grid[k]);
+      result.col(static_cast<Index>(k)).head(known.size()) = known;
+    }
+    return result;
+  }
+
+private:
+  double tolerance_;
+  OrthonormalColumns span_;
+  std::map<Mu, Vector> known_; // a finer grid holds the points of the coarser one, bit by bit
+};
+
 /// Values at a grid that is made finer along the axes that need it until the interpolant is right
-/// to the tolerance. `blocks_at`: at many mu. Collective.
+/// to the tolerance: their coordinates in the columns of `known`. `blocks_at`: at some mu, a column
+/// for each. Collective.
 template <class BlocksAt>
-Matrix values_on_grid(const Scene &scene, const FullMu &all, const CondensedOptions &options,
-                      CondensedOperator &condensed, BlocksAt &&blocks_at) {
-  std::map<Mu, Vector> known; // a finer grid holds the points of the coarser one, bit by bit
+Matrix values_on_grid(const Problem &problem, const FullMu &all, const CondensedOptions &options,
+                      CondensedOperator &condensed, SpannedValues &known, BlocksAt &&blocks_at) {
+  const Scene &scene = problem.scene();
   condensed.axes = axes_of(scene, 5);
   while (true) {
     const std::vector<Mu> grid = free_grid(scene, condensed.axes, all);
-    std::vector<Mu> added;
-    std::copy_if(grid.begin(), grid.end(), std::back_inserter(added),
-                 [&](const Mu &mu) { return !known.contains(mu); });
-    const std::vector<Vector> blocks = blocks_at(added);
-    for (std::size_t k = 0; k < added.size(); ++k)
-      known.emplace(added[k], blocks[k]);
-    Matrix values(known.begin()->second.size(), std::ssize(grid));
-    for (std::size_t k = 0; k < grid.size(); ++k)
-      values.col(k) = known.at(grid[k]);
-    const Vector tails = chebyshev_tails(condensed.axes, values);
+    known.add(grid, rank_of(problem.comm()) == 0, blocks_at);
+    Matrix coordinates = known.coordinates_at(grid);
+    const Vector tails = chebyshev_tails(condensed.axes, coordinates);
     condensed.error = tails.size() > 0 ? tails.maxCoeff() : 0;
-    if (condensed.error <= options.tolerance) return values;
+    if (condensed.error <= options.tolerance) return coordinates;
     for (std::size_t d = 0; d < condensed.axes.size(); ++d) {
       if (tails[d] <= options.tolerance) continue;
       ChebyshevAxis &axis = condensed.axes[d];
@@ -304,37 +346,45 @@ Condensation condense(Problem &problem, const CondensedLoads &loads, const FullM
   const SplitSum &split = problem.a_terms().split;
   Condensation result;
   CondensedOperator &condensed = result.condensed;
-  Matrix values;
+  constexpr double left_out = 1e-2; // of the tolerance
+  SpannedValues known(left_out * options.tolerance);
+  Matrix coordinates;
   if (appends && loads.join && split.mapped.empty() && split.exact.size() > 2) {
     const ResponseSpace space =
         append_responses(problem, loads.columns, weights_of(multipliers),
                          {axes_of(scene, 1), all, response_tolerance, most_responses}, *modes);
     const ReducedResponses reduced(problem, loads.columns, *modes);
-    values = values_on_grid(scene, all, options, condensed, [&](const std::vector<Mu> &set) {
-      std::vector<Vector> blocks(set.size(), Vector::Zero(size * size));
-      take_turns(problem.comm(), set.size(), [&](std::size_t k) {
-        blocks[k] = blocks_of(reduced.compliance(expand(scene.parameters, set[k])), size);
-      });
-      for (Vector &block : blocks)
-        over_ranks(problem.comm(), MPI_SUM, block);
-      return blocks;
-    });
+    coordinates =
+        values_on_grid(problem, all, options, condensed, known, [&](const std::vector<Mu> &set) {
+          Matrix blocks = Matrix::Zero(size * size, std::ssize(set));
+          take_turns(problem.comm(), set.size(), [&](std::size_t k) {
+            blocks.col(static_cast<Index>(k)) =
+                blocks_of(reduced.compliance(expand(scene.parameters, set[k])), size);
+          });
+          for (auto column : blocks.colwise())
+            over_ranks(problem.comm(), MPI_SUM, column);
+          return blocks;
+        });
     result.responses = space.functions;
     result.factorisations = space.points;
   } else {
     FactorisedResponses exact(problem, loads, options.responses, appends ? modes : nullptr,
                               free_grid(scene, axes_of(scene, 3), all));
-    values = values_on_grid(scene, all, options, condensed, [&](const std::vector<Mu> &set) {
-      std::vector<Vector> blocks;
-      for (const Mu &mu : set)
-        blocks.push_back(exact.blocks_at(mu));
-      return blocks;
-    });
+    coordinates =
+        values_on_grid(problem, all, options, condensed, known, [&](const std::vector<Mu> &set) {
+          Matrix blocks;
+          for (std::size_t k = 0; k < set.size(); ++k) {
+            const Vector column = exact.blocks_at(set[k]);
+            blocks.conservativeResize(column.size(), std::ssize(set));
+            blocks.col(static_cast<Index>(k)) = column;
+          }
+          return blocks;
+        });
     result.responses = exact.appended;
     result.factorisations = exact.factorisations;
   }
   condensed.dofs = loads.units;
-  compress(values, size * size, options.tolerance, condensed);
+  compress(known.columns(), coordinates, size * size, options.tolerance, condensed);
   return result;
 }
 

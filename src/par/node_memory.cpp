@@ -2,6 +2,7 @@
 
 #include "rbvi/par/collective.hpp"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <limits>
@@ -11,17 +12,49 @@ namespace rbvi {
 
 namespace {
 
-double available_bytes() {
-  std::ifstream file("/proc/meminfo");
-  std::string name, unit;
-  for (double kilobytes = 0; file >> name >> kilobytes;) {
-    if (name == "MemAvailable:") return 1024 * kilobytes;
-    std::getline(file, unit);
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// The number behind a name at the beginning of a line; without a name the first of the file.
+double number_in(const std::filesystem::path &path, const std::string &name, double otherwise) {
+  std::ifstream file(path);
+  std::string word, rest;
+  double value = 0;
+  while (name.empty() || file >> word) {
+    if (word == name) return file >> value ? value : otherwise;
+    std::getline(file, rest);
   }
-  return std::numeric_limits<double>::infinity();
+  return otherwise;
+}
+
+double available_bytes() {
+  const double kilobytes = number_in("/proc/meminfo", "MemAvailable:", infinite);
+  return std::min(1024 * kilobytes, left_by_groups());
 }
 
 } // namespace
+
+double left_by_groups(const std::filesystem::path &file, const std::filesystem::path &root) {
+  std::ifstream groups(file);
+  double left = infinite;
+  for (std::string line; std::getline(groups, line);) { // "0::/a/b", "4:memory:/a/b"
+    const bool second = line.starts_with("0::");        // version of the groups
+    if (!second && line.find(":memory:") == std::string::npos) continue;
+    const std::filesystem::path base = second ? root : root / "memory";
+    for (std::filesystem::path group = line.substr(line.rfind(':') + 1);;
+         group = group.parent_path()) {
+      const std::filesystem::path at = base / group.relative_path();
+      const double bound =
+          number_in(at / (second ? "memory.max" : "memory.limit_in_bytes"), "", infinite);
+      const double used =
+          number_in(at / (second ? "memory.current" : "memory.usage_in_bytes"), "", 0);
+      const double caches =
+          number_in(at / "memory.stat", second ? "inactive_file" : "total_inactive_file", 0);
+      left = std::min(left, bound - used + caches);
+      if (!group.has_relative_path()) break;
+    }
+  }
+  return left;
+}
 
 NodeMemory tightest_node(MPI_Comm comm) {
   MPI_Comm node = MPI_COMM_NULL;

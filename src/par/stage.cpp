@@ -36,9 +36,11 @@ Stage::Stage(StageTable &table, StageName stage) : start_(MPI_Wtime()) {
   if (log < 0) RBVI_CALL(PetscLogStageRegister(stage.text, &log));
   RBVI_CALL(PetscLogStagePush(log));
   if (costs_are_measured()) meter_.emplace();
+  peak_ = peak_bytes();
 }
 
 Stage::~Stage() {
+  if (const double peak = peak_bytes(); peak > peak_) row_->peak = std::max(row_->peak, peak);
   if (meter_) row_->cost = row_->cost.value_or(StageCost()) + meter_->so_far();
   (void)PetscLogStagePop();
   row_->seconds = row_->seconds.value_or(0) + MPI_Wtime() - start_;
@@ -53,6 +55,7 @@ StageTable finished_stages(const StageTable &ran, StageTable told) {
   for (std::size_t i = 0; i < told.size(); ++i) {
     told[i].seconds = ran[i].seconds;
     told[i].cost = ran[i].cost;
+    told[i].peak = ran[i].peak;
     if (runs(told[i]) && !told[i].seconds)
       throw failure(std::string("the stage '") + told[i].stage.text +
                     "' was declared to run, but did not");

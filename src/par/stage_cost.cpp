@@ -24,12 +24,7 @@ double status_line(const std::string &name) {
   return 0;
 }
 
-/// The largest resident set since the last call of forget_peak(), or of the process where the
-/// system does not let it be forgotten.
-double peak_bytes() {
-  return status_line("VmHWM:");
-}
-
+/// What peak_bytes() tells, where the system lets it be forgotten.
 void forget_peak() {
   std::ofstream("/proc/self/clear_refs") << 5 << std::flush;
 }
@@ -128,7 +123,12 @@ StageCost CostMeter::so_far() const {
   return cost;
 }
 
+double peak_bytes() {
+  return status_line("VmHWM:");
+}
+
 double resident_bytes() {
+  (void)malloc_trim(0);
   return status_line("VmRSS:");
 }
 

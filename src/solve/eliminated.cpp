@@ -303,7 +303,7 @@ MethodResult Eliminated::solve(const Operators &op, const Vector &start, double 
     if (contact.b.row(row).nonZeros() == 0) own_start[row] = 0;
   const FrictionResult found = solve_by_sets(
       solver, diagonal_of(layout_, contact, op.a, result.free_u.get()), own_laws(layout_, op.laws),
-      own_start, {.tolerance = accuracy}, largest, by_rule);
+      own_start, {{.tolerance = accuracy}, largest, by_rule});
   RBVI_CALL(VecCopy(u_.get(), result.free_u.get()));
   result.iterations = found.iterations;
   result.converged = found.converged;

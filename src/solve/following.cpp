@@ -3,9 +3,9 @@
 
 namespace rbvi {
 
-MethodResult solve_following(FactoredBody &body, const Problem &problem, Operators &op,
-                             const Vector &slip, const NonlinearStart &start,
-                             const NonlinearOptions &options, NonlinearResult &steps) {
+FollowingResult solve_following(FactoredBody &body, const Problem &problem, Operators &op,
+                                const Vector &slip, const NonlinearStart &start,
+                                const NonlinearOptions &options) {
   const Contact &contact = problem.contact();
   NonlinearContact nonlinear{.compliance = body,
                              .free = body.free(op),
@@ -15,10 +15,11 @@ MethodResult solve_following(FactoredBody &body, const Problem &problem, Operato
   FollowedContact followed{.contact = contact, .mu = op.mu, .slip = slip, .weights = op.weights};
   const ContactInterface *nodal = nodal_interface(contact);
   if (nodal != nullptr && !body.nodal) body.nodal.emplace(nodal->averages());
+  FollowingResult found;
+  auto &[result, steps] = found;
   steps = solve_following(followed, nodal != nullptr ? &*body.nodal : nullptr, nonlinear, start,
                           options);
   assemble(contact, op.mu, {steps.state, slip}, op);
-  MethodResult result;
   RBVI_CALL(VecDuplicate(op.f, result.free_u.put()));
   result.lambda = steps.x;
   result.start = steps.start;
@@ -28,7 +29,7 @@ MethodResult solve_following(FactoredBody &body, const Problem &problem, Operato
   result.converged = true;
   result.reason = steps.reason;
   body.displacement(op, result.lambda, result.free_u.get());
-  return result;
+  return found;
 }
 
 } // namespace rbvi

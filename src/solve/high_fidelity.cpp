@@ -222,9 +222,7 @@ MethodResult HighFidelity::run_following(const Mu &mu, const Operators &at_rest,
   const Solved *near = nearest(mu);
   if (near != nullptr && !bounds_follow_pressure(at_rest.laws)) start = {near->state, near->start};
   Operators op = at_rest;
-  NonlinearResult steps;
-  MethodResult result =
-      solve_following(*body_, problem_, op, slip, start, options_.nonlinear, steps);
+  auto [result, steps] = solve_following(*body_, problem_, op, slip, start, options_.nonlinear);
   result.kkt = kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda);
   measure(problem_, op, op.weights, result);
   result.load_steps = result.outputs.load_steps = steps.load_steps;
@@ -232,7 +230,7 @@ MethodResult HighFidelity::run_following(const Mu &mu, const Operators &at_rest,
   result.contraction = result.outputs.contraction = steps.rate;
   result.states = std::move(steps.iterates);
   result.states.push_back(std::move(steps.state));
-  return result;
+  return std::move(result);
 }
 
 void HighFidelity::measure_over_ranks(const Operators &op, const DistributedContact &contact,

@@ -11,6 +11,30 @@
 
 namespace rbvi {
 
+namespace {
+
+/// On bodies that contact alone holds.
+struct FreeForces {
+  Matrix held;  ///< Problem::held_by()
+  Vector terms; ///< sums of the sizes of the loads, as Problem::pushed()
+};
+
+FreeForces balanced_forces(const Problem &problem, const Operators &op) {
+  const auto [load, terms] = problem.pushed(op.mu);
+  FreeForces forces{problem.held_by(op), terms};
+  const Vector left = unbalanced_load(op.laws, forces.held, load, terms);
+  if (left.norm() > 0)
+    throw failure(describe(problem.free_bodies(), problem.scene().dim, left) +
+                  ", and is pushed where no contact and no friction can hold it");
+  return forces;
+}
+
+} // namespace
+
+Matrix unresisted_motions(const Problem &problem, const Operators &op) {
+  return unresisted_motions(op.laws, balanced_forces(problem, op).held);
+}
+
 MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, const Vector &slip) {
   const std::vector<FreeBody> &bodies = problem_.free_bodies();
   const int dim = problem_.scene().dim;
@@ -22,13 +46,7 @@ MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, const Vec
   const Vector start = near == nullptr || bounds_follow_pressure(all.laws)
                            ? Vector(Vector::Zero(motions_of(bodies)))
                            : near->beta;
-  const auto [load, terms] = problem_.pushed(op.mu);
-  const Matrix held = problem_.held_by(all);
-  const Vector left = unbalanced_load(all.laws, held, load, terms);
-  if (left.norm() > 0)
-    throw failure(describe(bodies, dim, left) +
-                  ", and is pushed where no contact and no friction can hold it: " +
-                  describe(problem_.scene().parameters, op.mu));
+  const auto [held, terms] = balanced_forces(problem_, all);
   Matrix lengths(start.size(), start.size()); // of the springs by each motion
   Index k = 0;
   for (const Handle<Vec> &motion :

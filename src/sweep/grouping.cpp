@@ -27,10 +27,6 @@ std::string groups_text(int ranks, int ranks_per_solve) {
          counted(ranks_per_solve, "rank") + ": ";
 }
 
-std::string memory_text(double bytes) {
-  return bytes < 1e9 ? formatted("%.0f MB", bytes / 1e6) : formatted("%.3g GB", bytes / 1e9);
-}
-
 } // namespace
 
 double solve_bytes(const SolveSize &size) {
@@ -62,9 +58,9 @@ Grouping choose_grouping(int ranks, std::size_t samples, const SolveSize &size,
     least = time;
   }
   const std::string facts = counted(wanted, "sample") + " of about " +
-                            formatted("%.0f", size.dofs) + " dofs and " + memory_text(bytes) +
-                            ", " + memory_text(node.bytes) + " for the " +
-                            counted(node.ranks, "rank") + " of a node";
+                            formatted("%.0f", size.dofs) + " dofs and " + bytes_text(bytes) + ", " +
+                            bytes_text(node.bytes) + " for the " + counted(node.ranks, "rank") +
+                            " of a node";
   if (best == 0) return {ranks, groups_text(ranks, ranks) + facts + ", where not even one may fit"};
   return {best, groups_text(ranks, best) + facts +
                     (too_many == 0 ? ""

@@ -117,7 +117,15 @@ void print_scene(const Problem &problem) {
               separable_contact(scene) ? "interpolated where they vary" : "evaluated at each mu");
 }
 
-/// Contact and the mapped mesh at the corners of the box and at random points.
+/// That of bodies that contact alone holds a motion costs nothing.
+void warn_of_motion(const Problem &problem, const Mu &mu, const std::string &says) {
+  if (rank_of(problem.comm()) == 0)
+    std::printf("warning: at %s %s\n", short_text(problem.scene().parameters, mu).c_str(),
+                says.c_str());
+}
+
+/// Contact, the mapped mesh and the balance of loads at the corners of the box and at random
+/// points.
 void check_points(Problem &problem) {
   const ParameterSpace &space = problem.scene().parameters;
   std::vector<Mu> points = corners_and_faces(space);
@@ -128,9 +136,31 @@ void check_points(Problem &problem) {
   for (const Mu &mu : points)
     complaints.collect("at " + describe(space, mu), [&] {
       check_query(problem.scene(), mu, false);
-      problem.assemble(mu);
+      const Operators &op = problem.assemble(mu);
+      if (problem.free_bodies().empty() || !has_multipliers(problem.scene())) return;
+      if (const Matrix motions = unresisted_motions(problem, op); motions.cols() > 0)
+        warn_of_motion(problem, mu,
+                       describe(problem.free_bodies(), problem.scene().dim, motions) +
+                           ", where no contact and no friction prevents it");
     });
   complaints.throw_all();
+}
+
+/// What an answer has to be there to tell, at the corners and faces of the box: where few solves
+/// and dofs make that cheap.
+void try_free_bodies(Problem &problem, HighFidelity &solver) {
+  constexpr double most = 2e5; // dofs of all solves
+  const std::vector<Mu> points = corners_and_faces(problem.scene().parameters);
+  if (problem.free_bodies().empty() ||
+      static_cast<double>(points.size()) * problem.dofs().total_free > most)
+    return;
+  for (const Mu &mu : points) {
+    try {
+      solver.solve(mu);
+    } catch (const Error &error) { // of every rank
+      warn_of_motion(problem, mu, error.what());
+    }
+  }
 }
 
 /// The physical groups of a mesh as a case in a folder.
@@ -182,8 +212,8 @@ void command_check(const ToolOptions &options) {
   });
   const Mu mu = box_centre(problem.scene().parameters);
   const std::string at = short_text(problem.scene().parameters, mu);
-  const HfSolution solution =
-      while_doing("solving " + at, [&] { return HighFidelity(problem, options.hf).solve(mu); });
+  HighFidelity solver(problem, options.hf);
+  const HfSolution solution = while_doing("solving " + at, [&] { return solver.solve(mu); });
   write_solution(problem, options, mu, solution);
   collectively(world, [&] {
     if (rank_of(world) != 0) return;
@@ -192,8 +222,9 @@ void command_check(const ToolOptions &options) {
     print_outputs(std::cout, solution.outputs);
     if (solution.outputs.contact_nodes && *solution.outputs.contact_nodes == 0)
       std::printf("warning: nothing touches there\n");
-    std::printf("no defect was found\n");
   });
+  try_free_bodies(problem, solver);
+  if (rank_of(world) == 0) std::printf("no defect was found\n");
   if (options.run_tests) run_tests(options);
 }
 

@@ -10,8 +10,6 @@
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/offline_run.hpp"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
@@ -83,13 +81,13 @@ GrowthRun measure(MPI_Comm world, const ToolOptions &options, const std::vector<
   run.refine = options.mesh.refine;
   run.ranks = ranks_of(world);
   run.ranks_per_solve = options.ranks_per_solve;
-  (void)malloc_trim(0);
   StageCost before;
   before.memory = resident_bytes();
   run.resident = costs_over_ranks(world, before).largest.memory;
   remove_directory(world, options.out);
   const Groups groups(world, options.ranks_per_solve);
-  const OfflineRun made = run_offline(world, groups, options, training);
+  const OfflineRun made =
+      run_offline(world, groups, options, training, plan_offline(world, groups, options, training));
   run.nodes = made.nodes;
   run.dofs = made.dofs;
   run.multipliers = made.multipliers;

@@ -26,16 +26,13 @@ namespace rbvi {
 
 namespace {
 
-/// By whom samples are solved, and how the linear systems of contact: that takes the mesh to tell.
-void print_solve_plan(MPI_Comm world, const Grouping &grouping, const Groups &groups,
-                      const ToolOptions &options, std::size_t samples) {
-  if (rank_of(world) == 0) std::printf("%s\n", grouping.text.c_str());
-  if (options.hf.method != HfMethod::active_set || !has_multipliers(options.scene)) return;
-  const Workspace work(world, groups, options);
-  HfOptions hf = options.hf;
-  hf.samples = static_cast<int>(samples) / groups.count();
-  if (rank_of(world) == 0)
-    std::printf("Contact is %s\n", contact_cost_text(work.group_problem(), hf).c_str());
+/// The stages, by whom samples are solved, how the linear systems of contact, and the memory.
+void print_plan(const Grouping &grouping, const ToolOptions &options, const OfflinePlan &plan) {
+  print_stages(plan.stages, plan.foreseen);
+  std::printf("%s\n", grouping.text.c_str());
+  if (options.hf.method == HfMethod::active_set && has_multipliers(options.scene))
+    std::printf("Contact is %s\n", contact_cost_text(plan.work.group_problem(), plan.hf).c_str());
+  std::printf("%s\n", memory_text(plan.foreseen, plan.stages, plan.room).c_str());
 }
 
 /// Throws bad_input where displacements that the scene imposes at some training parameter are not
@@ -82,11 +79,27 @@ std::vector<Mu> checked_training(const ToolOptions &options) {
   return training;
 }
 
-OfflineRun run_offline(MPI_Comm world, const Groups &groups, const ToolOptions &options,
-                       const std::vector<Mu> &training) {
-  StageTable before = preparation_stages(options, training.size(), groups);
-  StageTable after = closing_stages();
+OfflinePlan plan_offline(MPI_Comm world, const Groups &groups, const ToolOptions &options,
+                         const std::vector<Mu> &training) {
+  const std::vector<StageTable> stages{preparation_stages(options, training.size(), groups),
+                                       reduction_stages(options.scene, options.reduce),
+                                       closing_stages()};
+  const RunSizes counted = sizes_by_count(world, groups, options);
+  check_memory(foresee(options, training, counted), stages, room_for(world));
+  StageTable before = stages.front();
   Workspace work = timed(before, stage::mesh, [&] { return Workspace(world, groups, options); });
+  HfOptions hf = options.hf;
+  hf.samples = static_cast<int>(training.size()) / groups.count();
+  const RunSizes sizes = sizes_of(world, work.group_problem(), hf, counted);
+  return {stages,         std::move(before), std::move(work), hf, foresee(options, training, sizes),
+          room_for(world)};
+}
+
+OfflineRun run_offline(MPI_Comm world, const Groups &groups, const ToolOptions &options,
+                       const std::vector<Mu> &training, OfflinePlan plan) {
+  check_memory(plan.foreseen, plan.stages, plan.room);
+  StageTable before = std::move(plan.before), after = closing_stages();
+  Workspace work = std::move(plan.work);
   check_imposed_at(work.group_problem(), training);
   Sweep sweep = timed(before, stage::snapshots, [&] {
     return run_sweep(
@@ -118,9 +131,13 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const ToolOptions &
       write_sample_table(options.out / "samples.csv", options.scene.parameters, sweep.samples);
     });
   });
+  std::vector<StageTable> stages{before, made.stages, finished_stages(after, closing_stages())};
+  for (StageTable &table : stages)
+    for (StageRow &row : table)
+      MPI_Allreduce(MPI_IN_PLACE, &row.peak, 1, MPI_DOUBLE, MPI_MAX, world);
   return {std::move(sweep),
           std::move(model),
-          {before, made.stages, finished_stages(after, closing_stages())},
+          std::move(stages),
           static_cast<int>(problem.mesh().total_nodes),
           static_cast<int>(problem.dofs().total),
           static_cast<int>(problem.dual_size())};
@@ -133,19 +150,21 @@ void command_offline(const ToolOptions &options) {
       group_ranks(world, options.scene, options.mesh, training.size(), options.ranks_per_solve);
   const Groups groups(world, grouping.ranks_per_solve);
   const int rank = rank_of(world);
-  if (rank == 0)
-    print_stages({preparation_stages(options, training.size(), groups),
-                  reduction_stages(options.scene, options.reduce), closing_stages()});
-  if (options.plan) return print_solve_plan(world, grouping, groups, options, training.size());
-  if (options.out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
-  check_outputs(world, options,
-                {{"the reduced model", options.out / "model.h5"},
-                 {"its fields", fields_file(options.out / "model.h5")},
-                 {"the table", options.out / "samples.csv"}});
-
-  const OfflineRun run = run_offline(world, groups, options, training);
+  if (!options.plan && options.out.empty())
+    throw bad_input("no run directory is named: use -out run/NAME");
+  if (!options.plan)
+    check_outputs(world, options,
+                  {{"the reduced model", options.out / "model.h5"},
+                   {"its fields", fields_file(options.out / "model.h5")},
+                   {"the table", options.out / "samples.csv"}});
+  OfflinePlan plan = plan_offline(world, groups, options, training);
+  if (rank == 0 && options.plan) print_plan(grouping, options, plan);
+  if (options.plan) return check_memory(plan.foreseen, plan.stages, plan.room);
+  if (rank == 0) print_stages(plan.stages, plan.foreseen);
+  const Foresight foreseen = plan.foreseen;
+  const OfflineRun run = run_offline(world, groups, options, training, std::move(plan));
   if (rank == 0) {
-    print_stages(run.stages);
+    print_stages(run.stages, foreseen);
     std::cout << "Self-check: ";
     print_self_check(std::cout, run.model.made.self_check, run.model.scene.parameters);
     tell_of_errors(run.model, options.out);

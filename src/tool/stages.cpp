@@ -4,6 +4,8 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/scaled_part.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 
 namespace rbvi {
@@ -62,18 +64,34 @@ StageTable closing_stages() {
           {StageName("reconstruction"), "online, only when asked", StageKind::skipped}};
 }
 
-void print_stages(const std::vector<StageTable> &tables) {
-  std::printf("%-24s %9s  %s\n", "Stage", "seconds", "what");
-  std::optional<double> total;
+void print_stages(const std::vector<StageTable> &tables, const Foresight &foreseen) {
+  constexpr double megabyte = 1e6;
+  const auto number = [](const char *format, double value) {
+    return value > 0 ? formatted(format, value) : std::string();
+  };
+  const auto print = [](const char *stage, const std::array<std::string, 4> &numbers,
+                        const std::string &what) {
+    std::printf("  %-22s %8s %9s %6s %7s  %s\n", stage, numbers[0].c_str(), numbers[1].c_str(),
+                numbers[2].c_str(), numbers[3].c_str(), what.c_str());
+  };
+  std::printf("%-24s %8s %9s %6s %7s  %s\n", "Stage", "seconds", "(planned)", "MB", "(plan)",
+              "what");
+  double seconds = 0, peak = 0;
   for (const StageTable &rows : tables)
-    for (const auto &[stage, what, kind, seconds, cost] : rows) {
-      const bool skipped = kind == StageKind::skipped || kind == StageKind::nothing_to_do;
-      std::printf("  %-22s %9s  %s%s\n", stage.text,
-                  seconds ? formatted("%.3f", *seconds).c_str() : "", skipped ? "skipped: " : "",
-                  what.c_str());
-      if (seconds) total = total.value_or(0) + *seconds;
+    for (const StageRow &row : rows) {
+      const bool skipped = row.kind == StageKind::skipped || row.kind == StageKind::nothing_to_do;
+      const auto found = foreseen.find(row.stage.text);
+      const Foreseen plan =
+          found == foreseen.end() || row.kind == StageKind::skipped ? Foreseen{} : found->second;
+      print(row.stage.text,
+            {number("%.3f", row.seconds.value_or(0)), number("(%.2g)", plan.seconds),
+             number("%.0f", row.peak / megabyte), number("(%.0f)", plan.first / megabyte)},
+            (skipped ? "skipped: " : "") + row.what);
+      seconds += row.seconds.value_or(0);
+      peak = std::max(peak, row.peak);
     }
-  if (total) std::printf("  %-22s %9.3f\n", "total", *total);
+  if (seconds > 0)
+    print("total", {formatted("%.3f", seconds), "", number("%.0f", peak / megabyte), ""}, "");
 }
 
 } // namespace rbvi

@@ -71,7 +71,9 @@ std::vector<Option> of_runs() {
                  "bench: measure what offline costs, stage by stage, on the meshes with these "
                  "-mesh_refine, with every number of ranks per solve that divides the ranks or "
                  "with that of the command line; run time against error is then not measured")),
-      of_command(flag("plan", RBVI_AT(plan), "print which stages would run, and stop")),
+      of_command(flag("plan", RBVI_AT(plan),
+                      "print which stages would run, with the memory and time "
+                      "that are foreseen, and stop")),
       of_command(flag("run", RBVI_AT(run_tests),
                       "check: solve at the tests of the case, and compare what they expect"))};
 }

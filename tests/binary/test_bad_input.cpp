@@ -97,6 +97,9 @@ TEST_P(BadInput, ScenesAndOptions) {
        {"offline -case case.yaml -radius 0.2,0.2 -out run", "both bounds are the same"},
        {"offline -case case.yaml -radius 0.2 -out run", "3 counts for 2 free parameters"},
        {"offline -case case.yaml -radius 0.2 -parameters radius -out run", "fixed by -radius 0.2"},
+       {"offline -case " RBVI_CASES
+        "/membrane_obstacle -circle_edges 120 -mesh_refine 6 -train grid:20,20,20 -out run",
+        "the stage 'interpolation' would take about"},
        {"offline -case case.yaml -options_file no -out run", "options file no"},
        {"offline -case case.yaml", "use -out"}});
 }

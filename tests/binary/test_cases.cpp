@@ -61,6 +61,38 @@ TEST_F(Cases, ABodyThatNothingHoldsIsRefusedByEveryCommand) {
                       {"offline -case block -out run", says}});
 }
 
+/// A block that its load presses onto the floor, or shears, or lifts.
+TEST_F(Cases, WhereBodiesAreNotHeldIsTold) {
+  const auto write = [](const std::string &press, const std::string &friction) {
+    spill("pressed.yaml", "rbvi: 1\nphysics: plane_strain\nmesh: {built_in: one_block, degree: 1}\n"
+                          "parameters: {press: {range: " +
+                              press + ", default: 1}, friction: {range: " + friction +
+                              ", default: 0.5}}\n"
+                              "materials: {rubber: {at: all, E: 15, nu: 0.3}}\n"
+                              "loads: {top: {at: top, traction: [0, -press]}}\n"
+                              "contact: {floor: {at: contact, against: {plane: {normal: [0, -1], "
+                              "position: 0}}, friction: {coulomb: friction}}}\n");
+  };
+  write("[0.5, 1]", "[0.2, 1]");
+  EXPECT_FALSE(contains(output_of(rbvi(2, "check pressed.yaml")), "warning"));
+  write("[0.5, 1]", "[0, 1]");
+  const std::string says = output_of(rbvi(1, "check pressed.yaml"));
+  EXPECT_TRUE(contains(says,
+                       "warning: at press=0.5 friction=0 the body can move along (1, 0), where "
+                       "no contact and no friction prevents it\n"))
+      << says;
+  EXPECT_FALSE(contains(says, "warning: at press=0.5 friction=1 ")) << says;
+  EXPECT_TRUE(contains(says, "no defect was found")) << says;
+  write("[-0.1, 1]", "[0.2, 1]");
+  const Finished lifted = shell(rbvi(2, "check pressed.yaml"));
+  EXPECT_EQ(lifted.status, 2);
+  EXPECT_TRUE(contains(lifted.err,
+                       "at press=-0.1 friction=0.2: the body can move along (0, 1), and is "
+                       "pushed where no contact and no friction can hold it\n"))
+      << lifted.err;
+  EXPECT_FALSE(contains(lifted.err, "at press=1 ")) << lifted.err;
+}
+
 TEST_F(Cases, AMeshOfOnesOwnBeginsACaseOfIt) {
   spill("coarse.msh", coarse_gmsh());
   output_of(rbvi(1, "new own -mesh coarse.msh"));

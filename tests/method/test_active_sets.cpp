@@ -91,7 +91,7 @@ TEST(ActiveSets, OfTwoRanksSettleTogether) {
     };
     const FrictionProblem &p = bodies[self];
     found[self] = solve_by_sets(dense(p.h, p.q), p.h.diagonal(),
-                                uniform_laws(p.q.size() / 2, 2, bound), {}, {}, largest);
+                                uniform_laws(p.q.size() / 2, 2, bound), {}, {.largest = largest});
   };
   std::thread other(rank, 1);
   rank(0);
@@ -120,8 +120,8 @@ TEST(ActiveSets, OfNothingInContactAreOneSystem) {
 
 TEST(ActiveSets, SaySoWhereTheyDoNotSettle) {
   const FrictionProblem p = punch(61, 2, 20, 0.05);
-  const FrictionResult stopped = solve_by_sets(dense(p.h, p.q), p.h.diagonal(),
-                                               uniform_laws(61, 2, {}), {}, {.max_iterations = 2});
+  const FrictionResult stopped = solve_by_sets(
+      dense(p.h, p.q), p.h.diagonal(), uniform_laws(61, 2, {}), {}, {{.max_iterations = 2}});
   EXPECT_FALSE(stopped.converged);
   EXPECT_NE(stopped.reason.find("after 2 steps"), std::string::npos) << stopped.reason;
   EXPECT_THROW(

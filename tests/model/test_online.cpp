@@ -173,14 +173,14 @@ TEST(OnlineSolver, TheBoxIsKeptUnlessExtrapolating) {
 TEST(KktResidual, SeesEachCondition) {
   const Vector au = Vector::Constant(1, 1), btx = Vector::Constant(1, 1),
                f = Vector::Constant(1, 2), one = Vector::Constant(1, 1);
-  EXPECT_EQ(kkt_residual(au, btx, f, one, one, one), 0);
-  EXPECT_EQ(kkt_residual(au, 0 * btx, f, one, one, one), 0.5);
-  EXPECT_EQ(kkt_residual(au, btx, f, 4 * one, 3 * one, 0 * one), 0.25);
-  EXPECT_EQ(kkt_residual(au, btx, f, 3 * one, 4 * one, one), 0.25);
-  EXPECT_EQ(kkt_residual(0 * au, 0 * au, 0 * au, 0 * one, 0 * one, 0 * one), 0);
+  EXPECT_EQ(kkt_residual({au, btx, f, one, one, one}), 0);
+  EXPECT_EQ(kkt_residual({au, 0 * btx, f, one, one, one}), 0.5);
+  EXPECT_EQ(kkt_residual({au, btx, f, 4 * one, 3 * one, 0 * one}), 0.25);
+  EXPECT_EQ(kkt_residual({au, btx, f, 3 * one, 4 * one, one}), 0.25);
+  EXPECT_EQ(kkt_residual({0 * au, 0 * au, 0 * au, 0 * one, 0 * one, 0 * one}), 0);
   const Vector round_off = Vector::Constant(1, 1e-16); // of terms of size 1, which cancel
-  EXPECT_EQ(kkt_residual(au, btx, f, round_off, 0 * one, one), 1);
-  EXPECT_NEAR(kkt_residual(au, btx, f, round_off, 0 * one, one, 0, 1), 1e-12, 1e-17);
+  EXPECT_EQ(kkt_residual({au, btx, f, round_off, 0 * one, one}), 1);
+  EXPECT_NEAR(kkt_residual({au, btx, f, round_off, 0 * one, one, 0, 1}), 1e-12, 1e-17);
 }
 
 /// (B.36) against the cotangent formula: int |grad phi_0|^2 = |opposite edge|^2 / (4 area).
@@ -213,10 +213,10 @@ TEST(KktResidual, IsNoNumberWhereAnOperatorIsNone) {
   for (const Index entry : {0, 1}) {
     Vector bad = two;
     bad[entry] = std::nan("");
-    EXPECT_TRUE(std::isnan(kkt_residual(bad, -two, two, two, two, two)));
-    EXPECT_TRUE(std::isnan(kkt_residual(two, -two, two, bad, two, two)));
-    EXPECT_TRUE(std::isnan(kkt_residual(two, -two, two, two, bad, two)));
-    EXPECT_TRUE(std::isnan(kkt_residual(two, -two, two, two, two, bad)));
+    EXPECT_TRUE(std::isnan(kkt_residual({bad, -two, two, two, two, two})));
+    EXPECT_TRUE(std::isnan(kkt_residual({two, -two, two, bad, two, two})));
+    EXPECT_TRUE(std::isnan(kkt_residual({two, -two, two, two, bad, two})));
+    EXPECT_TRUE(std::isnan(kkt_residual({two, -two, two, two, two, bad})));
   }
 }
 

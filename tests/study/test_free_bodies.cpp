@@ -120,6 +120,28 @@ TEST(FreeBodies, WhatNothingHoldsIsRefused) {
   expect_exact(problem, {1, 0.1, 0.5}, solver.solve({1, 0.1, 0.5})); // a failure leaves no trace
 }
 
+TEST(FreeBodies, WhetherTheyAreHeldIsKnownWithoutASolve) {
+  Problem problem(PETSC_COMM_WORLD, block(1), {});
+  const auto motions = [&](const Mu &mu) {
+    return unresisted_motions(problem, problem.assemble(mu));
+  };
+  EXPECT_EQ(motions({1, 0.1, 0.5}).cols(), 0);
+  const Matrix without_friction = motions({1, 0, 0});
+  EXPECT_EQ(describe(problem.free_bodies(), 2, without_friction), "the body can move along (1, 0)");
+  EXPECT_EQ(
+      said([&] {
+        motions({1, 0.2, 0.1});
+      }),
+      "the body can move along (0.995, 0.0995), and is pushed where no contact and no friction can "
+      "hold it")
+      << "at right angles to the cone of friction";
+  EXPECT_NE(said([&] {
+              motions({-1, 0, 1});
+            }).find("can move along (0, 1), and is pushed"),
+            std::string::npos)
+      << "up";
+}
+
 TEST(FreeBodies, AReducedBlockIsInBalance) {
   Reduced made(block(2), "grid:2,3,2");
   made.reduce(testing_reduced::everything());

@@ -58,8 +58,10 @@ struct Offline : testing::Test {
     if (rank_of(PETSC_COMM_WORLD) == 0) fs::remove_all(options.out);
   }
   OfflineRun run() const {
-    return run_offline(PETSC_COMM_WORLD, Groups(PETSC_COMM_WORLD, 1), options,
-                       checked_training(options));
+    const Groups groups(PETSC_COMM_WORLD, 1);
+    const std::vector<Mu> training = checked_training(options);
+    return run_offline(PETSC_COMM_WORLD, groups, options, training,
+                       plan_offline(PETSC_COMM_WORLD, groups, options, training));
   }
   void expect_refused(const std::string &part) const {
     EXPECT_TRUE(refuses(part, [&] { run(); }));

@@ -141,10 +141,11 @@ bool is_partial(double weight, double whole);
 /// The ends of contact where `lambda` is above `least`: where a piece of the slave curve ends, or
 /// where the master curve does and nothing faces the slave from there on (the last multiplier with
 /// a partner, and those before it that do not have one everywhere), unless that end is closed.
+/// `shares`: of the weights of multipliers, of what they would be with partners everywhere.
 /// `closed`: of each piece of the slave curve, then whether all first and all last ends of the
 /// master curve are.
 double ends_in_contact(const PairMultipliers &multipliers, const CurveShape &slave,
-                       const HatWeights &hats, const Vector &weights, const Vector &lambda,
-                       double least, const std::vector<std::array<bool, 2>> &closed);
+                       const Vector &shares, const Vector &lambda, double least,
+                       const std::vector<std::array<bool, 2>> &closed);
 
 } // namespace rbvi

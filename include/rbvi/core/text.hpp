@@ -15,6 +15,9 @@ std::string short_number(double value);
 /// "1 mode", "2 modes".
 std::string counted(long number, const std::string &noun);
 
+/// "320 MB", "1.2 GB".
+std::string bytes_text(double bytes);
+
 /// "a, b, c".
 std::string joined(const std::vector<std::string> &parts, const std::string &separator = ", ");
 

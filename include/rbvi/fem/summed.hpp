@@ -28,20 +28,26 @@ bool differs(const Summed<Object> &summed, const Sum &sum, const FullMu &all_par
   return summed.made_at != values_of_dependence(sum, all_parameters);
 }
 
-/// summed.total at mu. `cells`: mapped there, where there are terms that depend on the map.
-/// Collective. Throws bad_input for a coefficient or an entry that is not finite.
+/// Where terms are assembled.
+struct Domain {
+  const Mesh &mesh;
+  const Dofs &dofs;
+  const MappedVertices &mapped; ///< at mu, where there are terms that depend on the map
+};
+
+/// summed.total at mu. Collective. Throws bad_input for a coefficient or an entry that is not
+/// finite.
 template <class Object>
 void sum_up(const Sum &sum, const ParameterSpace &space, const FullMu &all_parameters,
-            const Mesh &mesh, const Dofs &dofs, const MappedVertices &mapped,
-            Summed<Object> &summed);
+            const Domain &domain, Summed<Object> &summed);
 
 extern template Summed<Mat> make_summed(const Sum &, const ParameterSpace &, const Mesh &,
                                         const Dofs &);
 extern template Summed<Vec> make_summed(const Sum &, const ParameterSpace &, const Mesh &,
                                         const Dofs &);
-extern template void sum_up(const Sum &, const ParameterSpace &, const FullMu &, const Mesh &,
-                            const Dofs &, const MappedVertices &, Summed<Mat> &);
-extern template void sum_up(const Sum &, const ParameterSpace &, const FullMu &, const Mesh &,
-                            const Dofs &, const MappedVertices &, Summed<Vec> &);
+extern template void sum_up(const Sum &, const ParameterSpace &, const FullMu &, const Domain &,
+                            Summed<Mat> &);
+extern template void sum_up(const Sum &, const ParameterSpace &, const FullMu &, const Domain &,
+                            Summed<Vec> &);
 
 } // namespace rbvi

@@ -32,13 +32,18 @@ using SetSolver = std::function<SetSolution(const SetSystem &system, double accu
 /// Empty: all nodes are here.
 using LargestOverRanks = std::function<void(Vector &)>;
 
+struct SetOptions {
+  FrictionOptions friction{};
+  LargestOverRanks largest{};
+  bool by_rule = false; ///< as friction_answer
+};
+
 /// Semismooth Newton as in solve_friction, also where there is no friction; the systems are solved
-/// as exactly as the sets need, that of the last sets to `options.tolerance`. `diagonal`: the order
+/// as exactly as the sets need, that of the last sets to the tolerance. `diagonal`: the order
 /// of magnitude of H_jj, positive, which weighs a slip against a traction; the answer does not
 /// depend on it. Where the sets return, it is not converged: nothing else is tried. Throws failure
-/// for friction in three dimensions. `by_rule`: as friction_answer.
+/// for friction in three dimensions.
 FrictionResult solve_by_sets(const SetSolver &solve, const Vector &diagonal, const NodeLaws &laws,
-                             const Vector &start, const FrictionOptions &options = {},
-                             const LargestOverRanks &largest = {}, bool by_rule = false);
+                             const Vector &start, const SetOptions &options = {});
 
 } // namespace rbvi

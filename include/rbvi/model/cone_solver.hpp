@@ -68,11 +68,17 @@ private:
   Vector f_, g_;
 };
 
+/// What a residual of the pair of spaces is made of; what it refers to must outlive it.
+struct KktTerms {
+  const Vector &au, &btx, &f; ///< A u, B^T x
+  const Vector &bu, &g, &x;   ///< B u
+  Index free = 0;             ///< so many of the last rows are equations: B u = g
+  double terms = 0;           ///< the largest of |B| |u|, which cancel in B u
+};
+
 /// Relative residual of A u + B^T x = f, B u <= g, x . (B u - g) = 0 for x >= 0: the largest of
 /// |A u + B^T x - f| / (|f| + |B^T x|), max (B u - g)_+ / s and |x . (B u - g)| / (s sum |x|), with
-/// s = max(|g|, |B u|, 1e-4 terms) in the maximum norm. au = A u, bu = B u, btx = B^T x; `terms`:
-/// |B| |u|, what cancels in B u. The last `free` rows are equations: B u = g.
-double kkt_residual(const Vector &au, const Vector &btx, const Vector &f, const Vector &bu,
-                    const Vector &g, const Vector &x, Index free = 0, double terms = 0);
+/// s = max(|g|, |B u|, 1e-4 terms) in the maximum norm.
+double kkt_residual(const KktTerms &answer);
 
 } // namespace rbvi

@@ -34,8 +34,13 @@ struct RowsOfB {
 /// All rows together, or B^n and B^tau. `affine` must outlive it.
 std::vector<RowsOfB> rows_of_b(const AffineOperators &affine, const Problem &problem);
 
+/// Of the terms that are not exact: the first mu of the set with each value of the parameters that
+/// the sum depends on, by number; none where all are exact.
+std::vector<int> interpolated_samples(const Sum &sum, const ParameterSpace &space,
+                                      const std::vector<Mu> &set);
+
 /// Collective. Assembles the operators at every mu of `training` (of A and F the terms that are not
-/// exact, of A the lower triangle, where the parameters that they depend on differ) and
+/// exact, of A the lower triangle, at interpolated_samples()) and
 /// interpolates each. `apart`: of B in place of `options`, where there is one interface. B stays
 /// one where it is a multiple of one form at all `training`, since then one term serves all rows,
 /// and without friction, where there is only B^n.

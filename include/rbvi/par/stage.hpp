@@ -29,6 +29,7 @@ struct StageRow {
   StageKind kind = StageKind::runs;
   std::optional<double> seconds = {}; ///< wall seconds of all its runs
   std::optional<StageCost> cost = {}; ///< of all its runs, where costs_are_measured()
+  double peak = 0; ///< bytes: largest resident set, where it made that of the process larger
 };
 
 /// The declaration of what will run, in the order of print.
@@ -48,7 +49,7 @@ public:
 
 private:
   StageRow *row_;
-  double start_;
+  double start_, peak_;
   std::optional<CostMeter> meter_;
 };
 

@@ -57,8 +57,10 @@ private:
   StageCost start_; ///< counters; memory: the peak before
 };
 
-/// Resident bytes of this process now.
+/// Resident bytes of this process now, once memory that was freed is given back to the system.
 double resident_bytes();
+/// The largest number of them since the last CostMeter began or ended, or since the process did.
+double peak_bytes();
 
 /// Each member over the ranks.
 struct RankCosts {

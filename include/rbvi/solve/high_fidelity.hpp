@@ -83,6 +83,12 @@ struct HfSolution : Answer {
   Vector beta; ///< of bodies that contact alone holds: what their springs are relaxed at
 };
 
+/// Of bodies that contact alone holds, orthonormal combinations of the free motions that no contact
+/// and no friction resists at the mu of `op`: motions x any number. Without a solve. Throws failure
+/// where loads push along motions that these cannot hold. `op`: as Problem::assemble() left it,
+/// with all rows of B. Collective.
+Matrix unresisted_motions(const Problem &problem, const Operators &op);
+
 struct MethodResult;
 class FactoredBody;
 class GridSequence;

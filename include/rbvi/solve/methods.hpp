@@ -34,13 +34,16 @@ struct ActiveSetOptions {
 MethodResult solve_active_set(FullBody &body, const Operators &op, const Vector &start,
                               const ActiveSetOptions &options = {});
 
+struct FollowingResult {
+  MethodResult result;
+  NonlinearResult steps; ///< how it went
+};
 /// Contact that follows the displacement: Kacanov's or Newton's iteration on the condensed problem,
 /// every step on every rank. `op`: at mu; its contact operators become those of the solution.
-/// `steps` tells how it went; `slip`: the history of friction. Throws failure where it does not
-/// converge. Collective.
-MethodResult solve_following(FactoredBody &body, const Problem &problem, Operators &op,
-                             const Vector &slip, const NonlinearStart &start,
-                             const NonlinearOptions &options, NonlinearResult &steps);
+/// `slip`: the history of friction. Throws failure where it does not converge. Collective.
+FollowingResult solve_following(FactoredBody &body, const Problem &problem, Operators &op,
+                                const Vector &slip, const NonlinearStart &start,
+                                const NonlinearOptions &options);
 
 /// `f`: the load; `w_product`: over the ranks. Collective.
 MethodResult solve_uzawa(KSP ksp, const DualLayout &layout, const DistributedContact &contact,

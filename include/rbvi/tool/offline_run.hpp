@@ -2,7 +2,8 @@
 #pragma once
 
 #include "rbvi/par/groups.hpp"
-#include "rbvi/tool/stages.hpp"
+#include "rbvi/tool/foreseen.hpp"
+#include "rbvi/tool/workspace.hpp"
 
 namespace rbvi {
 
@@ -18,9 +19,26 @@ struct OfflineRun {
 /// SLEPc's objects do not fit the scene.
 std::vector<Mu> checked_training(const ToolOptions &options);
 
+/// A run before its first solve.
+struct OfflinePlan {
+  std::vector<StageTable> stages; ///< that will run
+  StageTable before;              ///< the first of them: the mesh is made
+  Workspace work;
+  HfOptions hf; ///< of the solves of a group
+  Foresight foreseen;
+  NodeMemory room; ///< with what the ranks hold
+};
+
+/// Makes the mesh, and foresees what the stages will take. Throws bad_input, as check_memory() does
+/// with what is known, before the mesh is made; whether there is room for all stages is for
+/// run_offline() to ask. Collective on `world`.
+OfflinePlan plan_offline(MPI_Comm world, const Groups &groups, const ToolOptions &options,
+                         const std::vector<Mu> &training);
+
 /// Solves at the training set by groups of ranks, reduces, and writes the run directory of the
-/// options. Throws failure if more samples fail than the options allow. Collective on `world`.
+/// options. Throws bad_input as check_memory() does, failure if more samples fail than the options
+/// allow. Collective on `world`.
 OfflineRun run_offline(MPI_Comm world, const Groups &groups, const ToolOptions &options,
-                       const std::vector<Mu> &training);
+                       const std::vector<Mu> &training, OfflinePlan plan);
 
 } // namespace rbvi

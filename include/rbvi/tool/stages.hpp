@@ -5,6 +5,8 @@
 #include "rbvi/mor/stages.hpp"
 #include "rbvi/tool/options.hpp"
 
+#include <map>
+
 namespace rbvi {
 
 namespace stage {
@@ -19,8 +21,16 @@ StageTable preparation_stages(const ToolOptions &options, std::size_t training,
 /// What runs after the reduction.
 StageTable closing_stages();
 
-/// Stage, seconds (nothing where no time is known) or "skipped", what; where anything was timed,
-/// the total.
-void print_stages(const std::vector<StageTable> &tables);
+/// What a stage will take.
+struct Foreseen {
+  double first = 0, others = 0; ///< bytes: largest resident set of the first rank, of each other
+  double seconds = 0;           ///< 0: hangs on what the stages before it find
+};
+/// By the names of stages.
+using Foresight = std::map<std::string, Foreseen>;
+
+/// Stage, seconds, and megabytes where the process had not taken as many before (nothing where none
+/// are known), in parentheses those foreseen of a rank, what; where anything was timed, the total.
+void print_stages(const std::vector<StageTable> &tables, const Foresight &foreseen);
 
 } // namespace rbvi

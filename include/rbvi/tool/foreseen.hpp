@@ -1,0 +1,40 @@
+// What the stages of an offline run will take, foreseen from sizes before the first of them runs.
+#pragma once
+
+#include "rbvi/par/node_memory.hpp"
+#include "rbvi/tool/stages.hpp"
+
+namespace rbvi {
+
+/// Of an offline run.
+struct RunSizes {
+  double dofs = 0;                     ///< free ones
+  double contact = 0, multipliers = 0; ///< contact dofs, dual dofs; 0: not known yet
+  double solves = 0;                   ///< with factors of A, for a sample (contact_cost)
+  bool eliminated = false;             ///< contact, by multigrid or by factors
+  int ranks = 1, group = 1;            ///< of the run, of a solve
+  double before = 0, held = 0;         ///< bytes of a rank: before the mesh, and with it
+};
+
+/// Before the mesh is made. Collective on `world`.
+RunSizes sizes_by_count(MPI_Comm world, const Groups &groups, const ToolOptions &options);
+/// With the group's problem, which is there, and the options of its solves. Collective on `world`.
+RunSizes sizes_of(MPI_Comm world, const Problem &problem, const HfOptions &options,
+                  RunSizes counted);
+
+/// By the names of the stages.
+Foresight foresee(const ToolOptions &options, const std::vector<Mu> &training,
+                  const RunSizes &sizes);
+
+/// What is free on the tightest node, and what its ranks hold. Collective.
+NodeMemory room_for(MPI_Comm world);
+/// "The most memory that a stage takes is about 120 MB for the 2 ranks of a node (snapshots), of 15
+/// GB".
+std::string memory_text(const Foresight &foreseen, const std::vector<StageTable> &stages,
+                        const NodeMemory &room);
+/// Throws bad_input where a stage that runs takes more; names the one that takes most, and what
+/// makes it smaller.
+void check_memory(const Foresight &foreseen, const std::vector<StageTable> &stages,
+                  const NodeMemory &room);
+
+} // namespace rbvi
