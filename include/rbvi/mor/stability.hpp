@@ -70,7 +70,15 @@ struct InfSup {
   double c_hf = hf;        ///< continuity constant (2.3), likewise
 };
 
-/// What V_N + S guarantees at one mu.
+/// What V_N + S guarantees at one mu: beta_off >= sqrt(1 - sigma^2) beta_on. For with T = T(mu) and
+/// the V-orthogonal projection Pi onto V_N + S
+///
+///   b(v, eta) = (v, T eta)_V,   hence   sup over v in V_N + S of b(v, eta) / |v|_V = |Pi T eta|_V,
+///   |Pi T eta|^2 = |T eta|^2 - |(I - Pi) T eta|^2 >= (1 - sigma^2) |T eta|^2,
+///
+/// since T eta is in S_R(mu) (2.21). V_N + S_R(mu) holds T eta, so that the sup over it is |T eta|,
+/// and beta_on |eta|_W <= |T eta|_V. Take the inf over eta, of the cone or of its span alike. For
+/// every sigma < 1 the bound is positive; (2.24) asks for sigma < beta_on / c_S.
 struct StabilityBound {
   double sigma;   ///< sigma_S(mu) (2.21), over the span
   double c;       ///< c_S(mu) (2.22), over the span
