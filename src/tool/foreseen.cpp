@@ -208,13 +208,15 @@ std::string memory_text(const Foresight &foreseen, const std::vector<StageTable>
                         const NodeMemory &room) {
   const auto [stage, bytes] = largest_stage(foreseen, stages, room.ranks);
   return "The most memory that a stage takes is about " + bytes_text(bytes) + " for the " +
-         counted(room.ranks, "rank") + " of a node (" + stage + "), of " + bytes_text(room.bytes);
+         counted(room.ranks, "rank") + " of a node (" + stage + "), of " + bytes_text(room.bytes) +
+         (bytes > room.bytes ? ": it may not fit; smaller by " + made_smaller_by(stage) : "");
 }
 
 void check_memory(const Foresight &foreseen, const std::vector<StageTable> &stages,
                   const NodeMemory &room) {
   const auto [stage, bytes] = largest_stage(foreseen, stages, room.ranks);
-  if (bytes <= room.bytes) return;
+  constexpr double right_to = 2; // what is foreseen: more than that is refused
+  if (bytes <= right_to * room.bytes) return;
   throw bad_input("the stage '" + stage + "' would take about " + bytes_text(bytes) + " for the " +
                   counted(room.ranks, "rank") + " of a node, where " + bytes_text(room.bytes) +
                   " can be had: use " + made_smaller_by(stage));

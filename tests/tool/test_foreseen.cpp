@@ -104,11 +104,14 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Memory, OfAllRanksOfANode) {
   const std::vector<StageTable> stages{{{stage::pod, "modes"}}};
   const Foresight foreseen{{stage::pod.text, {5e8, 3e8}}, {stage::cone.text, {9e9, 9e9}}};
-  EXPECT_NO_THROW(check_memory(foreseen, stages, {3, 1.2e9}));
+  EXPECT_NO_THROW(check_memory(foreseen, stages, {3, 0.6e9}));
+  EXPECT_NE(memory_text(foreseen, stages, {3, 0.6e9})
+                .find("it may not fit; smaller by fewer samples (-train)"),
+            std::string::npos);
   EXPECT_TRUE(refuses("the stage 'POD' would take about 1.1 GB for the 3 ranks of a node, where "
-                      "1 GB can be had: use fewer samples (-train)",
+                      "500 MB can be had: use fewer samples (-train)",
                       [&] {
-                        check_memory(foreseen, stages, {3, 1e9});
+                        check_memory(foreseen, stages, {3, 0.5e9});
                       }));
   EXPECT_EQ(memory_text(foreseen, stages, {1, 1e9}),
             "The most memory that a stage takes is about 500 MB for the 1 rank of a node (POD), of "

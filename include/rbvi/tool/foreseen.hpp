@@ -32,7 +32,8 @@ NodeMemory room_for(MPI_Comm world);
 /// GB".
 std::string memory_text(const Foresight &foreseen, const std::vector<StageTable> &stages,
                         const NodeMemory &room);
-/// Throws bad_input where a stage that runs takes more; names the one that takes most, and what
+/// Throws bad_input where a stage that runs takes more than twice of that, so that it cannot fit
+/// though what is foreseen is right to a factor of two; names the one that takes most, and what
 /// makes it smaller.
 void check_memory(const Foresight &foreseen, const std::vector<StageTable> &stages,
                   const NodeMemory &room);
