@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <map>
 
 namespace rbvi {
 
@@ -117,38 +118,53 @@ void print_scene(const Problem &problem) {
               separable_contact(scene) ? "interpolated where they vary" : "evaluated at each mu");
 }
 
-/// That of bodies that contact alone holds a motion costs nothing.
-void warn_of_motion(const Problem &problem, const Mu &mu, const std::string &says) {
-  if (rank_of(problem.comm()) == 0)
-    std::printf("warning: at %s %s\n", short_text(problem.scene().parameters, mu).c_str(),
-                says.c_str());
+/// Where bodies that contact alone holds are not held, and why: there is no answer there.
+using Unheld = std::map<Mu, std::string>;
+
+void print_unheld(const ParameterSpace &space, const Unheld &unheld) {
+  if (unheld.empty()) return;
+  const auto &[mu, why] = *unheld.begin();
+  std::printf(
+      "warning: no answer at %s: %s%s\n", short_text(space, mu).c_str(), why.c_str(),
+      unheld.size() == 1
+          ? ""
+          : (" (the first of " + std::to_string(unheld.size()) + " such parameters)").c_str());
+}
+
+void ask_free_bodies(const Problem &problem, const Operators &op, const Mu &mu, Unheld &unheld) {
+  if (problem.free_bodies().empty() || !has_multipliers(problem.scene())) return;
+  try {
+    if (const Matrix motions = unresisted_motions(problem, op); motions.cols() > 0)
+      unheld[mu] = describe(problem.free_bodies(), problem.scene().dim, motions) +
+                   ", where no contact and no friction prevents it";
+  } catch (const Error &error) { // of every rank
+    if (error.status() == Status::bad_input) throw;
+    unheld[mu] = error.what();
+  }
 }
 
 /// Contact, the mapped mesh and the balance of loads at the corners of the box and at random
 /// points.
-void check_points(Problem &problem) {
+Unheld check_points(Problem &problem) {
   const ParameterSpace &space = problem.scene().parameters;
   std::vector<Mu> points = corners_and_faces(space);
   if (space.size() > 0)
     for (Mu &mu : parse_set(space, random_points))
       points.push_back(std::move(mu));
   Complaints complaints;
+  Unheld unheld;
   for (const Mu &mu : points)
     complaints.collect("at " + describe(space, mu), [&] {
       check_query(problem.scene(), mu, false);
-      const Operators &op = problem.assemble(mu);
-      if (problem.free_bodies().empty() || !has_multipliers(problem.scene())) return;
-      if (const Matrix motions = unresisted_motions(problem, op); motions.cols() > 0)
-        warn_of_motion(problem, mu,
-                       describe(problem.free_bodies(), problem.scene().dim, motions) +
-                           ", where no contact and no friction prevents it");
+      ask_free_bodies(problem, problem.assemble(mu), mu, unheld);
     });
   complaints.throw_all();
+  return unheld;
 }
 
 /// What an answer has to be there to tell, at the corners and faces of the box: where few solves
 /// and dofs make that cheap.
-void try_free_bodies(Problem &problem, HighFidelity &solver) {
+void try_free_bodies(Problem &problem, HighFidelity &solver, Unheld &unheld) {
   constexpr double most = 2e5; // dofs of all solves
   const std::vector<Mu> points = corners_and_faces(problem.scene().parameters);
   if (problem.free_bodies().empty() ||
@@ -156,9 +172,9 @@ void try_free_bodies(Problem &problem, HighFidelity &solver) {
     return;
   for (const Mu &mu : points) {
     try {
-      solver.solve(mu);
+      if (!unheld.contains(mu)) solver.solve(mu);
     } catch (const Error &error) { // of every rank
-      warn_of_motion(problem, mu, error.what());
+      unheld[mu] = error.what();
     }
   }
 }
@@ -205,7 +221,7 @@ void command_check(const ToolOptions &options) {
     print_scene(problem);
     print_mesh(mesh, options.scene, !options.mesh.file.empty());
   });
-  check_points(problem);
+  Unheld unheld = check_points(problem);
   collectively(world, [&] {
     for (const std::string &set : {options.train, options.valid})
       if (!set.empty()) check_set(problem.scene(), parse_set(problem.scene().parameters, set));
@@ -223,8 +239,11 @@ void command_check(const ToolOptions &options) {
     if (solution.outputs.contact_nodes && *solution.outputs.contact_nodes == 0)
       std::printf("warning: nothing touches there\n");
   });
-  try_free_bodies(problem, solver);
-  if (rank_of(world) == 0) std::printf("no defect was found\n");
+  try_free_bodies(problem, solver, unheld);
+  if (rank_of(world) == 0) {
+    print_unheld(problem.scene().parameters, unheld);
+    std::printf("no defect was found\n");
+  }
   if (options.run_tests) run_tests(options);
 }
 

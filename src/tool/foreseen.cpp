@@ -207,9 +207,12 @@ NodeMemory room_for(MPI_Comm world) {
 std::string memory_text(const Foresight &foreseen, const std::vector<StageTable> &stages,
                         const NodeMemory &room) {
   const auto [stage, bytes] = largest_stage(foreseen, stages, room.ranks);
-  return "The most memory that a stage takes is about " + bytes_text(bytes) + " for the " +
-         counted(room.ranks, "rank") + " of a node (" + stage + "), of " + bytes_text(room.bytes) +
-         (bytes > room.bytes ? ": it may not fit; smaller by " + made_smaller_by(stage) : "");
+  std::string text = "The most memory that a stage takes is about " + bytes_text(bytes) +
+                     " for the " + counted(room.ranks, "rank") + " of a node (" + stage + "), of " +
+                     bytes_text(room.bytes);
+  if (bytes > room.bytes)
+    text.append(": it may not fit; smaller by ").append(made_smaller_by(stage));
+  return text;
 }
 
 void check_memory(const Foresight &foreseen, const std::vector<StageTable> &stages,

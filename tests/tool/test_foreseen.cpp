@@ -78,12 +78,12 @@ TEST_P(Foreseeing, ARunThatDoesNotFitIsRefusedBeforeAnythingIsWritten) {
         most = found->second.first;
         stage = row.stage.text;
       }
-  planned.room = {1, 1.01 * most};
+  planned.room = {1, 0.51 * most};
   EXPECT_NO_THROW(check_memory(planned.foreseen, planned.stages, planned.room));
-  planned.room = {1, 0.99 * most};
+  planned.room = {1, 0.49 * most};
   EXPECT_TRUE(refuses(
       "the stage '" + stage + "' would take about " + bytes_text(most) +
-          " for the 1 rank of a node, where " + bytes_text(0.99 * most) + " can be had: use ",
+          " for the 1 rank of a node, where " + bytes_text(0.49 * most) + " can be had: use ",
       [&] { run_offline(world, groups, options, checked_training(options), std::move(planned)); }));
   MPI_Barrier(world);
   EXPECT_FALSE(fs::exists(options.out));
