@@ -1,5 +1,6 @@
 #include "rbvi/contact/pair.hpp"
 
+#include "rbvi/contact/facing.hpp"
 #include "rbvi/contact/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/formula.hpp"
@@ -49,6 +50,7 @@ private:
   Curves curves(const std::vector<Point> &nodes) const;
   std::vector<Point> moves(const FullMu &mu) const;
   Partners partners(const FullMu &mu, const ContactState &state) const;
+  PairOperators operators_of(const Partners &found, const ContactState &state) const;
   PairOperators operators_at(const FullMu &mu, const ContactState &state) const;
   std::vector<std::array<bool, 2>> closed_ends() const;
   bool friction() const { return pair_.friction.law != FrictionLaw::none; }
@@ -150,15 +152,18 @@ Partners PairInterface::partners(const FullMu &mu, const ContactState &state) co
   return found;
 }
 
+PairOperators PairInterface::operators_of(const Partners &found, const ContactState &state) const {
+  PairOperators operators =
+      pair_operators(found, multipliers_, mesh_.dofs, mesh_.columns, friction());
+  if (!pair_.large) return operators;
+  operators.segments = found.segments;
+  operators.state = state;
+  return operators;
+}
+
 PairOperators PairInterface::operators_at(const FullMu &mu, const ContactState &state) const {
   try {
-    const Partners found = partners(mu, state);
-    PairOperators operators =
-        pair_operators(found, multipliers_, mesh_.dofs, mesh_.columns, friction());
-    if (!pair_.large) return operators;
-    operators.segments = found.segments;
-    operators.state = state;
-    return operators;
+    return operators_of(partners(mu, state), state);
   } catch (const Error &error) { // the fault of this mu, not of the input
     if (pair_.large) throw;
     throw failure(std::string(error.what()) + ", mapped at " + describe(scene_.parameters, mu));
@@ -244,10 +249,23 @@ void PairInterface::outputs(const FullMu &mu, const ContactOperators &operators,
 
 Grid PairInterface::fields(const FullMu &mu, const Vector &u, const Vector &lambda) {
   const Vector state = at_columns(mesh_, u);
-  const PairOperators pair = operators_at(mu, {state});
+  const Partners found = partners(mu, {state});
+  const PairOperators pair = operators_of(found, {state});
   if (pair.paired.size() < 2) return {};
   Grid grid = polyline(scene_, mu, mesh_, pair.paired, u);
   add_gap(pair.nodal_gap - pair.nodal_b * state, pair.normals, grid);
+  const Vector moved = moved_nodes(scene_, mu, mesh_, u);
+  std::vector<Point> nodes;
+  for (Index k = 0; k < mesh_.nodes(); ++k)
+    nodes.push_back({moved[3 * k], moved[3 * k + 1], 0});
+  const Curves by = curves(nodes);
+  Vector slip(std::ssize(found.vertices));
+  for (Index i = 0; i < slip.size(); ++i) {
+    const PairPoint &p = found.vertices[i];
+    slip[i] = slip_along(pair.normals[i],
+                         by.slave.at(p.slave_edge, p.s) - by.master.at(p.master_edge, p.t));
+  }
+  grid.of_nodes.push_back({"slip", slip, "m"});
   const bool constant = multipliers_.space() == MultiplierSpace::macro_edges;
   std::vector<bool> shown(slave_->vertices(), false);
   std::vector<Index> of_values; // the multiplier of each edge, or vertex, that is shown

@@ -188,6 +188,27 @@ TEST(NamedOutputs, TheSlipIsTheWayAlongTheFloor) {
       [](std::map<std::string, double> found) { EXPECT_NEAR(found["slip"], 0.15, 1e-9); });
 }
 
+/// Likewise on another block, whose top spreads as well.
+TEST(NamedOutputs, TheSlipBetweenBodiesIsTheWayOfOneAlongTheOther) {
+  const Scene scene = make_scene(
+      read_case(
+          "rbvi: 1\nphysics: plane_strain\nmesh: {built_in: two_blocks, degree: 2}\n"
+          "parameters: {d: {range: [0.02, 0.1], default: 0.05}, press: {range: [0.01, 0.02], "
+          "default: 0.015}}\n"
+          "materials: {rubber: {at: all, E: 15, nu: 0.3}}\n"
+          "imposed: {top: {at: top, ux: d, uy: -0.5 - press}, bottom: {at: bottom, ux: 0, "
+          "uy: 0}}\n"
+          "contact: {faces: {at: slave, against: master, multiplier: p1}}\n"
+          "outputs: {slip: {mean: slip}, gap: {max: abs(gap)}, force: {integral: pressure}}\n",
+          "blocks.yaml"),
+      {});
+  compare_balance(scene, {0.07, 0.013}, [](std::map<std::string, double> found) {
+    EXPECT_NEAR(found["slip"], 0.07, 1e-3) << "meshes that are not symmetric";
+    EXPECT_LT(found["gap"], 1e-3);
+    EXPECT_GT(found["force"], 0.1);
+  });
+}
+
 TEST(NamedOutputs, AreRefusedWhereTheyAreNotKnown) {
   const std::string hold = "imposed: {top: {at: top, ux: 0, uy: -d}, sides: {at: sides, ux: 0}}\n";
   const auto expect_refused = [&](const std::string &output, const std::string &words) {
