@@ -23,7 +23,7 @@ public:
 
   std::vector<Part> of(int output) {
     const OutputForm &form = scene_.outputs[output];
-    like_ = {output};
+    output_ = output;
     parts_.clear();
     if (form.kind == OutputForm::Kind::reaction)
       add_reaction(form);
@@ -43,7 +43,7 @@ public:
 
 private:
   void add(Part part) {
-    part.output = like_.output;
+    part.output = output_;
     parts_.push_back(part);
   }
 
@@ -141,7 +141,7 @@ private:
   const Scene &scene_;
   const Mesh &mesh_;
   const Dofs &dofs_;
-  Part like_;
+  int output_ = 0;
   std::vector<Part> parts_;
 };
 

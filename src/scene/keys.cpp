@@ -171,7 +171,7 @@ const std::vector<CaseKey> all_keys{
     {"outputs.*", "measure", "expression", "the length or area on which a condition holds"},
     {"outputs.*", "value", "expression", "at a point"},
     {"outputs.*", "reaction", "[number, number]",
-     "the force along this direction by which boundaries hold the body"},
+     "the force along this direction by which boundaries hold the body; of a membrane [1, 0]"},
     {"outputs.*", "spring", "a spring", "the force with which it pulls"},
     {"outputs.*", "where", "expression", "a condition: the part that counts"},
     {"require.*", "that", "expression", "in parameters: it must hold", true},
