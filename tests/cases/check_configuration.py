@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""check_configuration.py RBVI ROOT CASE...: cases/configuration.py draws the cases of ROOT/cases.
+
+What a case has in contact, imposes and loads is named in the picture, no name covers another one,
+and the committed picture is there and small. Skipped (77) without PyYAML.
+"""
+
+import subprocess
+import sys
+import tempfile
+from itertools import combinations
+from pathlib import Path
+
+try:
+    import yaml
+except ImportError:
+    sys.exit(77)
+
+LARGEST = 120_000  # bytes
+
+
+def drawn(configuration, rbvi, folder, case):
+    with tempfile.TemporaryDirectory() as scratch:
+        path = Path(scratch) / "u.vtu"
+        subprocess.run([rbvi, "check", str(folder), "-vtu", str(path)], check=True,
+                       stdout=subprocess.DEVNULL)
+        configuration.use_units(path)
+        bodies = configuration.Bodies(path)
+        return bodies, configuration.figure_of(bodies, case)
+
+
+def expected(bodies, case):
+    """Names of contacts, and of conditions and loads on boundaries that the mesh has."""
+    names = set(case["contact"])
+    for kind in ("imposed", "loads"):
+        names |= {name for name, what in case.get(kind, {}).items()
+                  if "force" not in what and bodies.boundary(what["at"]) is not None}
+    return names
+
+
+def wrong_with(bodies, figure, case, picture):
+    wrong, found = [], set()
+    figure.canvas.draw()
+    for axis in figure.axes:
+        texts = [text for text in axis.texts if text.get_text()]
+        found |= {text.get_text() for text in texts}
+        for one, other in combinations(texts, 2):
+            if one.get_window_extent().overlaps(other.get_window_extent()):
+                wrong.append(f"'{one.get_text()}' covers '{other.get_text()}'")
+        if not axis.get_xlabel().endswith(")"):
+            wrong.append(f"no unit in '{axis.get_xlabel()}'")
+    wrong += [f"'{name}' is not in the picture" for name in expected(bodies, case) - found]
+    if not picture.is_file() or picture.stat().st_size > LARGEST:
+        wrong.append(f"{picture.name} is missing or larger than {LARGEST} bytes")
+    return wrong
+
+
+def main(rbvi, root, names):
+    sys.path.insert(0, str(root / "cases"))
+    import configuration
+    folders = [root / "cases" / name for name in names]
+    status = 0
+    for folder in folders:
+        case = yaml.safe_load((folder / "case.yaml").read_text(encoding="utf-8"))
+        bodies, figure = drawn(configuration, rbvi, folder, case)
+        for line in wrong_with(bodies, figure, case, folder / "configuration.png"):
+            print(f"{folder.name}: {line}")
+            status = 1
+        configuration.plt.close(figure)
+    print(f"{len(folders)} configurations")
+    return status if folders else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1], Path(sys.argv[2]).resolve(), sys.argv[3:]))
