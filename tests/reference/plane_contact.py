@@ -131,14 +131,20 @@ def plane_strain(young, nu):
     return plane_stress(young / (1 - nu**2), nu / (1 - nu))
 
 
+def shares(at):
+    """Of each node in the line on which they are `at`, in order: Simpson's weights."""
+    share = np.zeros(len(at))
+    for i in range(0, len(at) - 2, 2):
+        share[i:i + 3] += (at[i + 2] - at[i]) * SIMPSON
+    return share
+
+
 def lengths(mesh, nodes, along=0):
-    """The share of each node of a straight boundary, given in any order: Simpson's weights."""
+    """The share of each node of a straight boundary, given in any order."""
     order = np.argsort(mesh.points[nodes, along])
-    at = mesh.points[nodes, along][order]
-    shares = np.zeros(len(nodes))
-    for i in range(0, len(nodes) - 2, 2):
-        shares[order[i:i + 3]] += (at[i + 2] - at[i]) * SIMPSON
-    return shares
+    share = np.zeros(len(nodes))
+    share[order] = shares(mesh.points[nodes, along][order])
+    return share
 
 
 def newton(compliance, at_rest, friction, threshold, state, border):
@@ -206,8 +212,11 @@ class Contact:
         self.factors = splu(matrix[self.free][:, self.free].tocsc(), permc_spec="MMD_AT_PLUS_A",
                             diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         self.rows = rows[:, self.free].tocsr()
-        self.compliance = np.hstack([self.rows @ self.factors.solve(self.rows[i:i + 64].T.toarray())
-                                     for i in range(0, rows.shape[0], 64)])
+        self.compliance = np.zeros((rows.shape[0], rows.shape[0]))
+        some = np.flatnonzero(np.diff(self.rows.indptr))  # without friction the second half is empty
+        for i in range(0, len(some), 64):
+            columns = some[i:i + 64]
+            self.compliance[:, columns] = self.rows @ self.factors.solve(self.rows[columns].T.toarray())
 
     def solve(self, load, gap, friction, motion=None, threshold=0.0, guess=0.0):
         """Forces of contact p, q, and u, of loads and of the gaps along the first rows, or along all.

@@ -15,7 +15,7 @@ import sys
 import numpy as np
 import scipy.sparse as sparse
 
-from plane_contact import SIMPSON, Contact, Mesh, graded, main, plane_strain, stiffness
+from plane_contact import Contact, Mesh, graded, main, plane_strain, shares, stiffness
 
 INDENTATION, GAP = 0.09, 0.001
 LAWS = {"": ("coulomb", 0.2), "-friction_coefficient 0.1": ("coulomb", 0.1), "-friction none": ("none", 0),
@@ -52,10 +52,7 @@ def body(n):
         (2 * count, matrix.shape[0]))
     contact = Contact(matrix, np.concatenate([2 * flat, 2 * flat + 1, 2 * axis]), rows)
     contact.compliance[count, count] = 1  # q = 0 at the lowest point, which the axis holds
-    share = np.zeros(count)
-    for i in range(0, count - 2, 2):
-        share[i:i + 3] += (angle[i + 2] - angle[i]) * SIMPSON
-    return matrix, contact, angle, share
+    return matrix, contact, angle, shares(angle)
 
 
 def values_at(mu, n):
