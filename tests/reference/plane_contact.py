@@ -6,6 +6,7 @@ nodes these forces are 1/6, 4/6 and 1/6 of its length times the pressure). It sh
 """
 
 import csv
+import functools
 from pathlib import Path
 
 import numpy as np
@@ -171,27 +172,27 @@ def newton(compliance, at_rest, friction, threshold, state, border):
         now = np.where(touches, p > -small, w_n > short)
         side = np.where(stick, np.where(abs(q) > friction * p + threshold + small, np.sign(q), 0),
                         np.where(slides * w_t > -short, slides, 0))
-        side = np.where((now & touches | always) & rough, side, 0)
+        side = np.where(touches | always, side, np.sign(w_t)) * ((now | always) & rough)
         if (now == touches).all() and (side == slides).all():
             return p, q, found[2 * n:], (touches, slides)
         touches, slides = now, side
     return None
 
 
-def solve_laws(compliance, at_rest, friction, border=None, threshold=0.0, guess=0.0):
+def solve_laws(compliance, at_rest, friction, border=None, threshold=0.0, guess=None):
     """Forces p >= 0 and q with |q| <= friction p + threshold on n nodes: w = at_rest - compliance [p, q] +
     motions beta has w_n <= 0, p w_n = 0, and w_t along q where |q| is at its bound, else 0; motions that
-    nothing else holds have motions^T [p, q] = load (`border`: motions, load), and begin at `guess`. Returns
-    p, q, beta. Friction grows from 0, or falls from where all sticks, where Newton's method goes in
-    circles otherwise."""
+    nothing else holds have motions^T [p, q] = load (`border`: motions, load). guess: which nodes touch, and
+    the sides to which they slide. Returns p, q, beta. Friction grows from 0, or falls from where all
+    sticks, where Newton's method goes in circles otherwise."""
     n = len(at_rest) // 2
     if border is None:
         border = np.zeros((2 * n, 0)), np.zeros(0)
     friction, threshold = np.broadcast_to(friction, n), np.broadcast_to(threshold, n)
     held = border[0].shape[1] == 0
-    start = at_rest + border[0] @ np.broadcast_to(guess, border[0].shape[1])
     for steps in (1, 4, 16, 64, 256):
-        state = start[:n] > 0, np.sign(start[n:]) * (friction + threshold > 0) if held else np.zeros(n)
+        state = at_rest[:n] > 0, np.sign(at_rest[n:]) * (friction + threshold > 0) if held else np.zeros(n)
+        state = state if guess is None else guess
         for k in range(steps):
             share = (k + 1) / steps if held else 10 ** (1 - (k + 1) / steps)
             found = newton(compliance, at_rest, friction * share, threshold * share, state, border)
@@ -208,17 +209,21 @@ class Contact:
     rows of dofs: first those out of the body, as many along the boundary behind them."""
 
     def __init__(self, matrix, held, rows):
-        self.free = np.setdiff1d(np.arange(matrix.shape[0]), held)
-        self.factors = splu(matrix[self.free][:, self.free].tocsc(), permc_spec="MMD_AT_PLUS_A",
-                            diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        free = np.setdiff1d(np.arange(matrix.shape[0]), held)
+        at = np.isin(free, rows.indices)
+        inner, at = free[~at], free[at]
+        factor = functools.partial(splu, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        order = np.argsort(factor(matrix[inner][:, inner], permc_spec="MMD_AT_PLUS_A").perm_c)
+        self.free = np.concatenate([inner[order], at])  # contact last: the end of the factors is its own
+        self.factors = factor(matrix[self.free][:, self.free], permc_spec="NATURAL")
+        end = self.factors.perm_c[len(inner):]
+        assert (self.factors.perm_r[len(inner):] == end).all()
+        schur = (self.factors.L[end][:, end] @ self.factors.U[end][:, end]).toarray()
         self.rows = rows[:, self.free].tocsr()
-        self.compliance = np.zeros((rows.shape[0], rows.shape[0]))
-        some = np.flatnonzero(np.diff(self.rows.indptr))  # without friction the second half is empty
-        for i in range(0, len(some), 64):
-            columns = some[i:i + 64]
-            self.compliance[:, columns] = self.rows @ self.factors.solve(self.rows[columns].T.toarray())
+        ends = rows[:, at].toarray()
+        self.compliance = ends @ np.linalg.solve(schur, ends.T)
 
-    def solve(self, load, gap, friction, motion=None, threshold=0.0, guess=0.0):
+    def solve(self, load, gap, friction, motion=None, threshold=0.0, guess=None):
         """Forces of contact p, q, and u, of loads and of the gaps along the first rows, or along all.
         `motion`, a column or several, is rigid and held by what is to carry nothing: springs in `matrix`, or
         dofs away from contact."""
