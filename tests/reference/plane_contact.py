@@ -102,21 +102,27 @@ def shapes(r, s):
 
 
 def stiffness(mesh, elasticity):
-    """elasticity[region]: 3 x 3, of (e_xx, e_yy, 2 e_xy)."""
+    """elasticity[region]: 3 x 3, of (e_xx, e_yy, 2 e_xy); or 4 x 4 with the strain about the axis x = 0 as
+    the last: then of the whole circumference."""
     xy = mesh.points[mesh.triangles]
     matrix = np.zeros((len(xy), 12, 12))
     law = np.array([elasticity[region] for region in range(1 + max(mesh.regions))])[mesh.regions]
     sides = []
     for (r, s), weight in zip(POINTS, WEIGHTS):
-        _, by = shapes(r, s)
+        values, by = shapes(r, s)
         jacobian = np.einsum("da,eax->edx", by, xy)
         determinant = np.linalg.det(jacobian)
         sides.append(np.sign(determinant))
         gradient = np.linalg.solve(jacobian, np.broadcast_to(by, (len(xy), 2, 6)))
-        b = np.zeros((len(xy), 3, 12))
+        b = np.zeros((len(xy), law.shape[1], 12))
         b[:, 0, 0::2], b[:, 1, 1::2] = gradient[:, 0], gradient[:, 1]
         b[:, 2, 0::2], b[:, 2, 1::2] = gradient[:, 1], gradient[:, 0]
-        matrix += weight * np.abs(determinant)[:, None, None] * np.einsum("eki,ekl,elj->eij", b, law, b)
+        volume = weight * np.abs(determinant)
+        if law.shape[1] == 4:
+            radius = xy[:, :, 0] @ values
+            b[:, 3, 0::2] = values / radius[:, None]
+            volume *= 2 * np.pi * radius
+        matrix += volume[:, None, None] * np.einsum("eki,ekl,elj->eij", b, law, b, optimize=True)
     assert (np.array(sides) == sides[0]).all(), "a triangle is turned over"
     dofs = np.stack([2 * mesh.triangles, 2 * mesh.triangles + 1], 2).reshape(len(xy), 12)
     rows, columns = np.repeat(dofs, 12, 1).ravel(), np.tile(dofs, (1, 12)).ravel()
@@ -130,6 +136,11 @@ def plane_stress(young, nu):
 
 def plane_strain(young, nu):
     return plane_stress(young / (1 - nu**2), nu / (1 - nu))
+
+
+def about_axis(young, nu):
+    shear, first = young / (2 * (1 + nu)), young * nu / ((1 + nu) * (1 - 2 * nu))
+    return np.diag([2 * shear, 2 * shear, shear, 2 * shear]) + first * np.outer([1, 1, 0, 1], [1, 1, 0, 1])
 
 
 def shares(at):
