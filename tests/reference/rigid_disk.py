@@ -78,4 +78,4 @@ def values_at(mu, n):
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv, values_at, AT, (4, 8, 16), stated, lambda options: LAWS[options]))
+    sys.exit(main(sys.argv, values_at, AT, (4, 8, 16), stated, LAWS.get))
