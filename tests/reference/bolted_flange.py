@@ -15,7 +15,8 @@ import scipy.sparse as sparse
 from plane_contact import Contact, Mesh, about_axis, graded, lengths, main, stiffness
 
 GASKET, FLANGE = 0, 1
-AT = [(1000, 0.15, 8e5, 0, 0.4), (1500, 0.15, 1e6, 5, 0.2), (3000, 0, 8e5, 6, 0.3), (500, 0.3, 1.5e6, 2, 0.25)]
+AT = [(1000, 0.15, 8e5, 0, 0.4), (1500, 0.15, 1e6, 5, 0.2), (3000, 0, 8e5, 6, 0.3),
+      (500, 0.3, 1.5e6, 2, 0.25)]
 
 
 def line(*parts):
@@ -70,7 +71,8 @@ def values_at(mu, n):
     face, stop = on(FLANGE, (112, 2), (142, 2))[0], on(FLANGE, (172, 2), (187.5, 2))[0]
     seat, every = len(top), len(top) + len(stop)
     at, beside = np.arange(seat), np.arange(seat, every)
-    rows = sparse.csr_matrix((np.repeat([1.0, -1.0, -1.0, 1.0, -1.0], [seat, seat, every - seat, seat, seat]), (
+    signs = np.repeat([1.0, -1.0, -1.0, 1.0, -1.0], [seat, seat, every - seat, seat, seat])
+    rows = sparse.csr_matrix((signs, (
         np.concatenate([at, at, beside, every + at, every + at]),
         np.concatenate([2 * top + 1, 2 * face + 1, 2 * stop + 1, 2 * top, 2 * face]))), (2 * every, size))
     motion = np.zeros(size)

@@ -18,8 +18,8 @@ import scipy.sparse as sparse
 from plane_contact import Contact, Mesh, graded, main, plane_strain, shares, solve_laws, stiffness
 
 GAP = 0.001
-AT = [(1, d, offset, friction) for d, offset in ((0.01, 0), (0.05, 0), (0.09, 0), (0.15, 0), (0.2, 0), (0.1, 0.1))
-      for friction in (0, 0.2)]
+PLACES = (0.01, 0), (0.05, 0), (0.09, 0), (0.15, 0), (0.2, 0), (0.1, 0.1)
+AT = [(1, d, offset, friction) for d, offset in PLACES for friction in (0, 0.2)]
 
 
 @functools.lru_cache
@@ -53,7 +53,7 @@ def values_at(mu, n):
         distance = np.hypot(*out)
         normal = out / distance
         tangent = np.array([normal[1], -normal[0]])
-        turn = np.block([[np.diag(-normal[0]), np.diag(-normal[1])], [np.diag(tangent[0]), np.diag(tangent[1])]])
+        turn = np.block([list(map(np.diag, -normal)), list(map(np.diag, tangent))])
         at_rest = np.append((normal * u).sum(0) - (distance - 1), (tangent * down).sum(0))
         p, q, _ = solve_laws(turn @ compliance @ turn.T, at_rest, friction, guess=guess)
         guess = p > 0, np.sign(q) * (abs(q) > (friction - 1e-9) * p)
@@ -65,7 +65,8 @@ def values_at(mu, n):
         raise RuntimeError("the normals do not settle")
     assert p[0] == 0 and p[-1] == 0, "contact comes to the end of its arc"
     return {"energy": (u * force).sum() / 2, "normal_force": p.sum(), "reaction": force[1].sum(),
-            "horizontal_reaction": force[0].sum(), "tangential_force": abs(q).sum(), "peak_pressure": (p / share).max()}
+            "horizontal_reaction": force[0].sum(), "tangential_force": abs(q).sum(),
+            "peak_pressure": (p / share).max()}
 
 
 def law(options):

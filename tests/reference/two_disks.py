@@ -47,7 +47,8 @@ def values_at(mu, n):
     contact = Contact(matrix, np.concatenate([2 * flat, 2 * flat + 1, 2 * axis]), rows)
     gap = mesh.points[one, 1] - mesh.points[other, 1] + GAP
     p, _, u = contact.solve(np.zeros(matrix.shape[0]), gap - CLOSER, 0.0)
-    return {"normal_force": 2 * p.sum(), "energy": u @ (matrix @ u), "peak_pressure": (p / shares(angle)).max()}
+    return {"normal_force": 2 * p.sum(), "energy": u @ (matrix @ u),
+            "peak_pressure": (p / shares(angle)).max()}
 
 
 if __name__ == "__main__":
