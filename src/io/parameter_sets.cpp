@@ -24,6 +24,7 @@ using Generator = std::function<std::optional<Mu>()>;
 
 constexpr double largest_set = 1e7;
 constexpr const char *id_name = "id";
+const std::string plus = " + "; ///< between the sets of a sum
 
 int parse_count(const std::string &text, const std::string &what) {
   const double value = parse_number(text, what);
@@ -217,17 +218,26 @@ ParameterReader::ParameterReader(const ParameterSpace &space, const std::string 
 
 std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text,
                           bool allow_outside) {
-  const std::string plus = " + ";
   std::vector<Mu> set;
   for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + plus.size()) {
     end = text.find(plus, begin);
     const std::string part = trimmed(text.substr(begin, end - begin));
     if (part == "-") throw bad_input("a set cannot come from standard input here: name a CSV file");
+    if (part != trimmed(text) && is_set_file(part))
+      throw bad_input("'" + part + "' in '" + text +
+                      "': a sum is of grids, random points and "
+                      "corners; put them into the file");
     ParameterReader reader(space, part, allow_outside);
     while (std::optional<Mu> mu = reader.next())
       set.push_back(std::move(*mu));
   }
   return set;
+}
+
+bool is_set_file(const std::string &set) {
+  return !set.empty() && !set.starts_with("grid:") && !set.starts_with("random:") &&
+         set != "corners" && set.find(plus) == std::string::npos &&
+         set.find_first_not_of("0123456789") != std::string::npos;
 }
 
 bool is_stream(const std::string &set) {

@@ -6,6 +6,7 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/fem/check_scene.hpp"
+#include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/tool/case_file.hpp"
 #include "rbvi/tool/cases.hpp"

@@ -1,6 +1,7 @@
 #include "rbvi/tool/run_directory.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/io/temporary_files.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/par/collective.hpp"
@@ -31,16 +32,11 @@ std::string read_set_file(const std::string &name, const std::string &file) {
   std::ostringstream bytes;
   if (!(bytes << in.rdbuf()))
     throw bad_input("cannot read '" + file + "', the set of option -" + name +
-                    " (grid:5,5, random:200:1 or a CSV file)");
+                    " (grid:5,5, random:200:1, corners or a CSV file)");
   return bytes.str();
 }
 
 } // namespace
-
-bool is_set_file(const std::string &set) {
-  return !set.empty() && !set.starts_with("grid:") && !set.starts_with("random:") &&
-         set.find_first_not_of("0123456789") != std::string::npos;
-}
 
 std::string beside_case(const std::string &name, const std::string &value,
                         const fs::path &case_file) {

@@ -42,7 +42,7 @@ TEST_F(Cases, ANewOneIsRightAndIsNotWrittenTwice) {
                       {"new", "new takes the name of a folder"},
                       {"new a b", "'b' is left over"},
                       {"check", "no case is named"}});
-  output_of(rbvi(2, "offline -case block -train grid:2,2,2 -out model"));
+  output_of(rbvi(2, "offline -case block -train 'corners + random:3:1' -out model"));
   EXPECT_TRUE(contains(output_of(rbvi_online("model/model.h5 --mu 0.05,0.1,0.3")), "normal_force"));
   output_of(rbvi(1, "verify -out model -valid random:2:1"));
 }

@@ -180,6 +180,9 @@ TEST(ParameterSet, OfCornersAndOfSeveralSets) {
   EXPECT_EQ(parse_set(space, "corners + random:3:7 + grid:1,1"), all);
   EXPECT_THROW(parse_set(space, "corners + "), Error);
   EXPECT_THROW(parse_set(space, "corners + -"), Error);
+  EXPECT_THROW(parse_set(space, "corners + a.csv"), Error);
+  EXPECT_FALSE(is_set_file("corners") || is_set_file("corners + random:3:7"));
+  EXPECT_TRUE(is_set_file("corners.csv"));
 }
 
 TEST(ParameterReader, GivesTheSetsOneByOne) {

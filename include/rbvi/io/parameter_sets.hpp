@@ -36,6 +36,8 @@ private:
   bool has_ids_ = false;
 };
 
+/// Whether the set is the name of a file.
+bool is_set_file(const std::string &set);
 /// Whether the set can be read only once: standard input, a pipe.
 bool is_stream(const std::string &set);
 

@@ -17,9 +17,6 @@ std::string beside_case(const std::string &name, const std::string &value,
 /// The value of option `name` as the case file of a run has it.
 std::string value_in_run(const std::string &name, const std::string &value);
 
-/// Whether a set (see parse_set) is in a file.
-bool is_set_file(const std::string &set);
-
 /// Writes the case file of a run that begins, and the sets that it names; removes temporary files
 /// of killed runs. Collective. Throws failure, or bad_input for a set that cannot be read.
 void begin_run(MPI_Comm world, const ToolOptions &options);
