@@ -110,7 +110,7 @@ void add_named_outputs(const OutputPlaces &places, const FullMu &mu, const Outpu
     if (!std::isfinite(value))
       throw failure("the output '" + form.name +
                     "' has no value: nothing is where its condition holds, or a field is not "
-                    "there (tangential and slip need friction, pressure and gap a contact)");
+                    "there (tangential needs friction)");
     outputs.named.push_back({form.name, value});
   }
 }

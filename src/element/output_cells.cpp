@@ -7,7 +7,6 @@
 #include "rbvi/element/quadrature.hpp"
 
 #include <cmath>
-#include <numbers>
 
 namespace rbvi {
 
@@ -80,16 +79,21 @@ OutputFields fields_at(const Scene &scene, const FullMu &mu, const DisplacedCell
   return fields;
 }
 
+/// The part s of the way along an edge.
+Barycentric on_facet(int facet, double s) {
+  const std::vector<int> ends = facet_nodes(2, 1, facet);
+  Barycentric at{};
+  at[ends[0]] = 1 - s;
+  at[ends[1]] = s;
+  return at;
+}
+
 void add_facet(const OutputState &state, const OutputPart &part, OutputLines &lines) {
   const DisplacedCell cell = state.displaced(part.cell);
-  const std::vector<int> ends = facet_nodes(2, 1, part.facet);
   const auto [length, normal] = facet_measure(2, facet_cell(cell.cell, part.facet).mapped);
   lines.add(
       [&, &normal = normal](double s) {
-        Barycentric at{};
-        at[ends[0]] = 1 - s;
-        at[ends[1]] = s;
-        OutputFields fields = fields_at(state.scene, state.mu, cell, at);
+        OutputFields fields = fields_at(state.scene, state.mu, cell, on_facet(part.facet, s));
         fields[field::nx] = normal[0];
         fields[field::ny] = normal[1];
         return fields;
@@ -177,13 +181,10 @@ double tested(const OutputState &state, const OutputPart &part, const Point &dir
 std::array<double, 2> facet_mean(const OutputState &state, const OutputPart &part,
                                  const Mean &mean) {
   const DisplacedCell cell = state.displaced(part.cell);
-  const std::vector<int> ends = facet_nodes(2, 1, part.facet);
   const double length = facet_measure(2, facet_cell(cell.cell, part.facet).reference).size;
   std::array<double, 2> sums{};
   for (const auto &[s, weight] : edge_quadrature) {
-    Barycentric at{};
-    at[ends[0]] = 1 - s;
-    at[ends[1]] = s;
+    const Barycentric at = on_facet(part.facet, s);
     const Point x = point_at(cell.cell.reference, at, 3);
     const double size = weight * length * circumference(mean.axisymmetric, x);
     sums[0] += size * dot(mean.direction, displacement_at(state.scene, cell, at));

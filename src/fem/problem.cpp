@@ -48,6 +48,7 @@ Dofs numbered_dofs(const Scene &scene, const Mesh &mesh) {
 
 Scene checked(Scene scene) {
   check_functions(scene);
+  check_outputs(scene);
   return scene;
 }
 

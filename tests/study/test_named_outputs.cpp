@@ -209,6 +209,23 @@ TEST(NamedOutputs, TheSlipBetweenBodiesIsTheWayOfOneAlongTheOther) {
   });
 }
 
+/// Of the whole circumference: a disc of radius 1 and height 0.5 that turns about x = 0.
+TEST(NamedOutputs, OfATurnedBodyAreOfTheWholeCircumference) {
+  const Scene scene =
+      pressed("imposed: {top: {at: top, ux: 0, uy: -d}}\n",
+              "  volume: {integral: 1, in: all}\n  inner: {measure: x < 0.5, at: top}\n"
+              "  side: {integral: nx, at: sides, where: x > 0.5}\n"
+              "  up: {reaction: [0, 1], at: top}\n",
+              "axisymmetric");
+  compare_balance(scene, {0.05, 12}, [](std::map<std::string, double> found) {
+    const double pi = std::acos(-1.0);
+    EXPECT_NEAR(found["volume"], pi / 2, 1e-12);
+    EXPECT_NEAR(found["inner"], pi / 4, 1e-9);
+    EXPECT_NEAR(found["side"], pi, 1e-12);
+    EXPECT_NEAR(found["up"] + found["pressed"], 0, 1e-9);
+  });
+}
+
 TEST(NamedOutputs, AreRefusedWhereTheyAreNotKnown) {
   const std::string hold = "imposed: {top: {at: top, ux: 0, uy: -d}, sides: {at: sides, ux: 0}}\n";
   const auto expect_refused = [&](const std::string &output, const std::string &words) {
@@ -223,6 +240,9 @@ TEST(NamedOutputs, AreRefusedWhereTheyAreNotKnown) {
   expect_refused("  far: {value: ux, point: [3, 0.2]}\n", "which no cell of the mesh has");
   expect_refused("  side: {reaction: [0, 1], at: sides}\n", "which is not held in its direction");
   expect_refused("  side: {reaction: [1, 0], at: sides}\n", "which shares nodes with 'contact'");
+  Scene misspelt = pressed(hold, "", "plane_strain"); // as a program may make it
+  misspelt.outputs.front().at = {"flor"};
+  EXPECT_THROW(Problem(PETSC_COMM_WORLD, misspelt, {}), Error);
 }
 
 TEST(NamedOutputs, OverNothingHaveNoValue) {

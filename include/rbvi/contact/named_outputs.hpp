@@ -10,7 +10,7 @@
 
 namespace rbvi {
 
-/// Throws bad_input for an output of an interface that the scene does not have.
+/// Throws bad_input for an output over a contact that the scene does not have.
 void check_outputs(const Scene &scene);
 
 /// Displacements without the motion, with the values that boundaries impose, node * components + c.
