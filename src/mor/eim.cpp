@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/par/stage_cost.hpp"
 
 #include <array>
 #include <cmath>
@@ -138,6 +139,7 @@ std::string stop_reason(const Eim &result, const EimOptions &options) {
 
 Eim eim(MPI_Comm comm, const Matrix &values, const std::vector<EntryKey> &keys,
         const EimOptions &options) {
+  const CountedEvent counted("EIM");
   if (!(options.tolerance >= 0)) throw bad_input("the tolerance of an EIM must not be negative");
   if (options.max_size < 0) throw bad_input("the maximal size of an EIM must not be negative");
   if (values.cols() == 0) throw failure("an empirical interpolation needs at least one snapshot");

@@ -78,11 +78,25 @@ StageCost counters() {
   now.factor_seconds = factors.seconds;
   now.solves = solves.count;
   now.solve_seconds = solves.seconds;
+  now.assemblies = all_of({"MatSetValuesCOO"}).count;
+  now.interpolations = all_of({"EIM"}).count;
   now.cg_steps = all_of({"VecTDot"}).count / 2; // PETSc's CG takes two in a step; nobody else does
   return now;
 }
 
 } // namespace
+
+CountedEvent::CountedEvent(const char *name) {
+  PetscLogEvent event = -1;
+  RBVI_CALL(PetscLogEventGetId(name, &event));
+  if (event < 0) RBVI_CALL(PetscLogEventRegister(name, PETSC_OBJECT_CLASSID, &event));
+  RBVI_CALL(PetscLogEventBegin(event, nullptr, nullptr, nullptr, nullptr));
+  event_ = event;
+}
+
+CountedEvent::~CountedEvent() {
+  (void)PetscLogEventEnd(event_, nullptr, nullptr, nullptr, nullptr);
+}
 
 StageCost operator+(StageCost first, const StageCost &second) {
   const double memory = std::max(first.memory, second.memory);

@@ -20,7 +20,7 @@ const std::vector<std::string> growth_columns{
     "resident_mb",   "stage",           "seconds",        "cpu_max",        "cpu_sum",
     "memory_max_mb", "memory_sum_mb",   "messages",       "messages_max",   "sent_mb",
     "reductions",    "symbolic",        "factorisations", "factor_seconds", "solves",
-    "solve_seconds", "cg_steps"};
+    "solve_seconds", "cg_steps",        "assemblies",     "interpolations"};
 
 std::string row(const GrowthRun &run, const std::string &stage, const RankCosts &cost) {
   const auto count = [](double value) { return formatted("%.0f", value); };
@@ -57,7 +57,9 @@ std::string row(const GrowthRun &run, const std::string &stage, const RankCosts 
                      real(largest.factor_seconds),
                      count(largest.solves),
                      real(largest.solve_seconds),
-                     count(largest.cg_steps)},
+                     count(largest.cg_steps),
+                     count(largest.assemblies),
+                     count(largest.interpolations)},
                     "", ",", "");
 }
 

@@ -20,16 +20,31 @@ struct StageCost {
   double factorisations = 0; ///< numeric
   double solves = 0;         ///< with factors; a block of right-hand sides is one
   double factor_seconds = 0, solve_seconds = 0; ///< of numeric factorisations, of those solves
-  double cg_steps = 0; ///< of conjugate gradients, also where multigrid estimates eigenvalues
+  double assemblies = 0;                        ///< of sparse matrices from the cells
+  double interpolations = 0; ///< runs of empirical interpolation, one for each operator
+  double cg_steps = 0;       ///< of conjugate gradients, also where multigrid estimates eigenvalues
 
   static constexpr auto members() {
-    return std::array{&StageCost::seconds,       &StageCost::cpu,
-                      &StageCost::memory,        &StageCost::messages,
-                      &StageCost::bytes,         &StageCost::reductions,
-                      &StageCost::symbolic,      &StageCost::factorisations,
-                      &StageCost::solves,        &StageCost::factor_seconds,
-                      &StageCost::solve_seconds, &StageCost::cg_steps};
+    return std::array{&StageCost::seconds,        &StageCost::cpu,
+                      &StageCost::memory,         &StageCost::messages,
+                      &StageCost::bytes,          &StageCost::reductions,
+                      &StageCost::symbolic,       &StageCost::factorisations,
+                      &StageCost::solves,         &StageCost::factor_seconds,
+                      &StageCost::solve_seconds,  &StageCost::assemblies,
+                      &StageCost::interpolations, &StageCost::cg_steps};
   }
+};
+
+/// Counts as an event of -log_view, by its name, from construction to destruction.
+class CountedEvent {
+public:
+  explicit CountedEvent(const char *name);
+  ~CountedEvent();
+  CountedEvent(const CountedEvent &) = delete;
+  CountedEvent &operator=(const CountedEvent &) = delete;
+
+private:
+  int event_ = -1;
 };
 
 /// One after the other: the sum, of memory the maximum.
