@@ -30,6 +30,10 @@ std::string error_text(double value) {
   return value < 0 ? "" : formatted("%.1e", value);
 }
 
+std::string milliseconds(double seconds) {
+  return formatted(seconds < 1 ? "%.3g" : "%.0f", 1e3 * seconds);
+}
+
 /// Queries from which the seconds spent offline are won back; "" if never or not applicable.
 std::string threshold(const BenchRow &row, double best) {
   if (row.offline == 0 || row.median >= best) return "";
@@ -45,8 +49,8 @@ std::vector<std::string> cells(const BenchRow &row, double best) {
   return {row.method,
           row.includes,
           std::to_string(row.queries),
-          formatted("%.3f", 1e3 * row.median),
-          formatted("%.3f", 1e3 * row.slow),
+          milliseconds(row.median),
+          milliseconds(row.slow),
           error_text(row.u_mean),
           error_text(row.u_max),
           error_text(row.lambda_mean),

@@ -41,7 +41,7 @@ BenchRow bench_solver(Problem &problem, const HfOptions &options, const std::vec
                       std::size_t count, From from);
 
 /// The parts of an active_set solve that starts from the active set of the truth: assembly,
-/// factorisation, two linear solves, columns and LCP.
+/// factorisation, two linear solves, and those with columns and LCP.
 std::vector<BenchRow> bench_parts(Problem &problem, const std::vector<Sample> &truths);
 /// Where contact follows the displacement: the iterations on a compliance that is there, from rest
 /// and from the nearest of the truths before, and one linear solve.

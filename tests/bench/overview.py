@@ -1,0 +1,231 @@
+#!/usr/bin/env python3
+"""overview.py BIN WORK [NAME ...]: run time against error, of every scene and formulation.
+
+Writes tests/bench/README.md and a picture for each scene beside it, from runs in WORK, where those
+that are there already are taken. With names: these alone, as tables on the screen.
+
+- full solves: each method of rbvi bench on the default mesh; the best one on meshes refined 0 to
+  LEVELS - 1 times against the mesh refined LEVELS times, by energy and normal force at MESH_SET;
+- models: every row of rbvi bench, of each reduction;
+- interpolation of the snapshots, which enforces no constraint.
+"""
+
+import csv
+import math
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "cases"))
+
+from figure_tools import BLUE, FLOOR, GREEN, GREY, ORANGE, PURPLE, np, plt
+
+LEVELS, MESH_SET = 2, "random:3:9"
+DISK = "rigid_disk"
+NITSCHE = ["-variant", "nitsche"]
+
+
+@dataclass(frozen=True)
+class Run:
+    name: str
+    scene: str  # picture that it belongs to
+    case: str
+    options: tuple = ()
+
+
+RUNS = (
+    Run("membrane, hybrid cone", "membrane_obstacle", "membrane_obstacle"),
+    Run("membrane, published cone", "membrane_obstacle", "membrane_obstacle", ("-variant", "published")),
+    Run("two disks, condensed", "two_disks", "two_disks"),
+    Run("two disks, cone", "two_disks", "two_disks", ("-variant", "cone")),
+    Run("two disks, large", "two_disks_large", "two_disks", ("-variant", "large")),
+    Run("disk, no friction", "disk_none", DISK, ("-friction", "none")),
+    Run("disk, no friction, Nitsche", "disk_none", DISK, (*NITSCHE, "-friction", "none")),
+    Run("disk, Tresca", "disk_tresca", DISK, ("-friction", "tresca")),
+    Run("disk, Tresca, Nitsche", "disk_tresca", DISK, (*NITSCHE, "-friction", "tresca")),
+    Run("disk, Coulomb, condensed", "disk_coulomb", DISK),
+    Run("disk, Coulomb, collocated", "disk_coulomb", DISK, ("-multiplier_reduction", "collocated")),
+    Run("disk, Coulomb, Nitsche", "disk_coulomb", DISK, NITSCHE),
+    Run("disk, large", "disk_large", DISK, ("-variant", "large")),
+    Run("disk, large, Nitsche", "disk_large", DISK, ("-variant", "large_nitsche")),
+    Run("roller", "roller", "roller"),
+    Run("flange", "bolted_flange", "bolted_flange"),
+    Run("seal", "seal", "seal"),
+    Run("bracket", "bracket", "bracket"),
+    Run("joint", "joint", "joint"),
+)
+
+
+def called(log, *command):
+    """What it prints; from the log of an earlier run where there is one."""
+    if not log.is_file():
+        done = subprocess.run([str(word) for word in command], capture_output=True, text=True,
+                              check=False)
+        if done.returncode not in (0, 1):
+            sys.exit(f"{' '.join(map(str, command))}\n{done.stderr}")
+        log.write_text(done.stdout + done.stderr, encoding="utf-8")
+    return log.read_text(encoding="utf-8")
+
+
+def rows_of(path):
+    with open(path, encoding="utf-8", newline="") as table:
+        return list(csv.DictReader(table))
+
+
+def number(text):
+    return float(text) if text else math.nan
+
+
+def measured(binaries, work, run):
+    """Rows of rbvi bench, and seconds offline."""
+    folder = work / run.name.replace(", ", "-").replace(" ", "_")
+    case = ["-case", ROOT / "cases" / run.case, *run.options]
+    called(work / f"{folder.name}.offline.log", "mpirun", "-n", "2", binaries / "rbvi", "offline", *case,
+           "-out", folder)
+    told = called(work / f"{folder.name}.bench.log", binaries / "rbvi", "bench", "-out", folder)
+    return rows_of(folder / "bench/table.csv"), told
+
+
+def meshes(binaries, work, run):
+    """(milliseconds, error) of full solves on meshes refined 0, 1, ... times."""
+    stem = run.name.replace(", ", "-").replace(" ", "_")
+    answers = []
+    for level in range(LEVELS + 1):
+        folder = work / f"{stem}.mesh{level}"
+        called(work / f"{folder.name}.log", binaries / "rbvi", "offline", "-case",
+               ROOT / "cases" / run.case, *run.options, "-train", MESH_SET, "-mesh_refine", level,
+               "-out", folder)
+        answers.append(rows_of(folder / "samples.csv"))
+    names = [name for name in ("energy", "normal_force") if name in answers[0][0]]
+    scale = {name: max(abs(number(row[name])) for row in answers[-1]) for name in names}
+    return [(1e3 * float(np.median([number(row["seconds"]) for row in rows])),
+             max(abs(number(a[name]) - number(b[name])) / scale[name]
+                 for a, b in zip(rows, answers[-1]) for name in names))
+            for rows in answers[:-1]]
+
+
+def first(rows, start, includes=""):
+    """The last row whose method begins so: of a model, the whole one."""
+    found = [row for row in rows if row["method"].startswith(start) and row["u_max"]
+             and (not includes or row["includes"] == includes)]
+    return found[-1] if found else None
+
+
+def pays(full, row, field):
+    """A sentence on whether the reduction wins, by the row that does what the full solve does."""
+    if row is None:
+        return "no answer of the model at some parameter"
+    best, quick, whole = (number(r["median_ms"]) for r in (full, row, field))
+    if whole < best:
+        return f"from {field['benefit_from']} queries on, with its field"
+    if quick < best:
+        return f"from {row['benefit_from']} queries on without the field; with it the full solve is faster"
+    return "the full solve is faster"
+
+
+def table(results):
+    head = ["", "dofs", "mesh error", "full solve, warm (ms)", "interpolation (ms)", "its error",
+            "outputs (ms)", "with field (ms)", "u, largest", "multipliers", "outputs",
+            "full solve / outputs, / with field", "reduction pays"]
+    lines = [head, ["---"] * len(head)]
+    for run, (rows, told, levels) in results.items():
+        full, between = rows[0], next((r for r in rows if "interpolation" in r["method"]
+                                       or "nearest" in r["method"]), None)
+        row, field = first(rows, "reduced", "outputs"), first(rows, "reduced", "outputs, field")
+        best = number(full["median_ms"])
+        ratio = "" if row is None else (f"{best / number(row['median_ms']):.3g}, "
+                                        f"{best / number(field['median_ms']):.3g}")
+        nodes = told.split(" nodes")[0].split()[-1]
+        lines.append([run.name, nodes, f"{levels[0][1]:.1e}", full["median_ms"],
+                      between["median_ms"] if between else "", between["u_max"] if between else "",
+                      *([row["median_ms"], field["median_ms"], row["u_max"], row["lambda_max"],
+                         row["outputs_max"]] if row else [""] * 5), ratio, pays(full, row, field)])
+    lines[0][1] = "nodes"
+    return "".join("| " + " | ".join(line) + " |\n" for line in lines)
+
+
+KINDS = (("reduced", BLUE, "o"), ("multilinear", ORANGE, "D"), ("nearest", ORANGE, "D"),
+         ("active_set", GREEN, "s"), ("nitsche", PURPLE, "s"), ("uzawa", GREY, "^"), ("vi", GREY, "v"))
+
+
+def draw(scene, results, path):
+    """Outputs: the marks of all runs of a scene, the Pareto front, the error of the mesh."""
+    figure, axis = plt.subplots(figsize=(6.4, 4.2), constrained_layout=True)
+    points, named = [], set()
+    for index, (run, (rows, _, levels)) in enumerate(results.items()):
+        for row in rows:
+            if not row["outputs_max"]:
+                continue
+            kind = next((k for k in KINDS if row["method"].startswith(k[0])), None)
+            time, error = number(row["median_ms"]), max(number(row["outputs_max"]), FLOOR)
+            label = f"{kind[0]}, {run.name}" if kind[0] == "reduced" else kind[0]
+            axis.plot(time, error, kind[2], color=kind[1], fillstyle=("full", "none", "left")[index % 3],
+                      label="" if label in named else label)
+            named.add(label)
+            points.append((time, error))
+        x, y = zip(*levels)
+        axis.plot(x, y, "x--", color=GREEN if index == 0 else PURPLE, linewidth=0.8,
+                  label=f"full solves over meshes, {run.name}")
+    points.sort()
+    front = [p for i, p in enumerate(points) if all(p[1] < q[1] for q in points[:i])]
+    axis.step([p[0] for p in front], [p[1] for p in front], where="post", color="black",
+              linewidth=0.9, label="Pareto front")
+    axis.set(xscale="log", yscale="log", xlabel="median time of an answer (ms)",
+             ylabel="largest error of the outputs (-)", title=scene)
+    axis.legend(fontsize=6.5, loc="center left", bbox_to_anchor=(1.01, 0.5))
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+PAGE = """# Run time against error, of every scene and formulation
+
+Command `tests/bench/all overview`, commit {commit}, {cores} cores. One page for what the pages beside it measure
+scene by scene ([tests](../README.md#benchmarks)).
+
+- *full solve, warm*: the best high-fidelity solver, started from the answer at the parameter before, with its field.
+- *interpolation*: of the snapshots, multilinear on grids, else the nearest one; it enforces no constraint.
+- *outputs*, *with field*: an answer of the model with its outputs; with the displacement of every node as well.
+- errors: of the model against full solves on the same mesh, largest over the validation set; outputs over the range
+  of each. *mesh error*: of energy and normal force on this mesh against the mesh refined {levels} times.
+- *reduction pays*: offline seconds, the full solves among them, over what a query saves.
+
+{table}
+Where the error of a model is below that of its mesh, a finer mesh improves the answer and a larger model does not:
+crosses in the pictures are full solves on the default mesh and finer ones, against the finest.
+
+{pictures}
+"""
+
+
+def main(binaries, work, *names):
+    work = Path(work)
+    work.mkdir(parents=True, exist_ok=True)
+    chosen = [run for run in RUNS if not names or run.name in names]
+    results = {}
+    for run in chosen:
+        print(run.name, flush=True)
+        results[run] = (*measured(Path(binaries).resolve(), work, run),
+                        meshes(Path(binaries).resolve(), work, run))
+    made = table(results)
+    if names:
+        print(made)
+        return
+    folder = ROOT / "tests/bench/overview"
+    folder.mkdir(exist_ok=True)
+    scenes = list(dict.fromkeys(run.scene for run in chosen))
+    for scene in scenes:
+        draw(scene, {run: results[run] for run in chosen if run.scene == scene},
+             folder / f"{scene}.png")
+    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True,
+                            text=True, check=True).stdout.strip()
+    (ROOT / "tests/bench/README.md").write_text(
+        PAGE.format(commit=commit, cores=len(os.sched_getaffinity(0)), levels=LEVELS, table=made,
+                    pictures="\n".join(f"![{scene}](overview/{scene}.png)" for scene in scenes)),
+        encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
