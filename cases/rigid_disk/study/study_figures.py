@@ -7,12 +7,14 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, history, log_axis, plt, read_grid,
                           save)
+from solution_figures import draw_bodies, draw_mesh
 from study_tools import rows_of, separation_errors, stored, table
 
 import numpy as np
 
 RADII = ("0.7", "1", "1.3")
 FRICTION = 0.2
+INITIAL_GAP = 0.001  # m, to the rigid disk of radius 1
 SHOWN = 0.25  # of the arc: a little more than is ever in contact
 SIZES = {"text": ("(30, 20, 20)", ORANGE), "published": ("-variant published", BLUE)}
 MODELS = {  # of the tangential stress
@@ -180,6 +182,30 @@ def tangential(study, runs, directory):
     save(figure, directory, "tangential.png")
 
 
+def configurations(directory, radius="0.7"):
+    """The body at rest, and deformed by the full and by the published reduced answer (figure 3.2)."""
+    figure, axes = plt.subplots(1, 3, figsize=(13, 3.6), constrained_layout=True, sharex=True,
+                                sharey=True)
+    angle = np.linspace(0, np.pi, 200)
+    for axis, title, name in zip(axes, ("at rest", "high-fidelity", "reduced, -variant published"),
+                                 ("truth", "truth", "published")):
+        axis.fill(np.cos(angle), np.sin(angle) - float(radius) - INITIAL_GAP - 1, color=GREY,
+                  alpha=0.4, linewidth=0)
+        path = directory / f"{name}_{radius}.vtu"
+        if title == "at rest":
+            grid = read_grid(path)
+            draw_mesh(axis, grid.points[:, :2], grid, 2 * float(radius))
+        else:
+            draw_bodies(figure, axis, path)
+        axis.set_title(f"{title}, radius {radius} m", loc="left")
+        axis.set_aspect("equal")
+        axis.set_xlabel("x (m)")
+    axes[0].set_ylabel("y (m)")
+    axes[0].set_xlim(-0.8, 0.8)
+    axes[0].set_ylim(-1, 0.05)
+    save(figure, directory, "configurations.png")
+
+
 def draw_all(study, runs, directory):
     directory.mkdir(exist_ok=True)
     for radius in RADII:
@@ -192,3 +218,4 @@ def draw_all(study, runs, directory):
     nodes(runs, directory)
     collocation(runs, directory)
     tangential(study, runs, directory)
+    configurations(directory)
