@@ -1,11 +1,16 @@
 #!/usr/bin/env python3
-"""Runs the study of a case on few parameters: every table and figure is there, the constants come in
-their order, and what is recommended is more accurate than what was published.
+"""Runs the study of a case on few parameters: every figure is there, the numbers of every table are
+those of studies/NAME.md, the constants come in their order, and what is recommended is more accurate
+than what was published.
 
-    check_study.py BIN CASE_DIR OUT [SCRIPT]     SCRIPT: of CASE_DIR/study, else study.py
+    check_study.py BIN CASE_DIR OUT [SCRIPT] [--write]     SCRIPT: of CASE_DIR/study, else study.py
+
+--write: writes studies/NAME.md, after a change that is meant. Cells of a column that is a time are not
+compared, nor those at round-off; the others are to a digit of two.
 """
 
 import csv
+import re
 import shutil
 import subprocess
 import sys
@@ -21,7 +26,7 @@ TABLES = {"membrane_obstacle": 8, "two_disks": 4, "rigid_disk": 4, "rigid_disk/n
           "rigid_disk/large_study": 6}
 FIGURES = {"membrane_obstacle": ("bases", "floors", "pga", "infsup", "modes", "pairs", "pressure"),
            "two_disks": ("solution", "bases", "pga", "infsup"),
-           "rigid_disk": ("laws", "bases", "pga", "eim", "nodes", "gcns", "tangential"),
+           "rigid_disk": ("configurations", "laws", "bases", "pga", "eim", "nodes", "gcns", "tangential"),
            "rigid_disk/nitsche_study": ("deformed", "normal", "tangential", "pod", "eim", "errors",
                                         "mixed"),
            "rigid_disk/large_study": ("deformed", "forces", "pressures", "steps", "infsup",
@@ -35,12 +40,56 @@ RUNS = {  # more accurate, less accurate
     "rigid_disk/large_study": [("none/default", "none/published")]}
 
 
+STORED = Path(__file__).parent / "studies"
+CLOSE, ROUND_OFF = 0.11, 1e-8  # of two digits the last one may change
+TIMES = re.compile(r"\bms\b|\bs\b|second|time|threshold|faster|benefit|pays")
+
+
+def tables_of(text):
+    """Title -> lines of cells."""
+    found = {}
+    for part in text.split("### ")[1:]:
+        title, *lines = part.splitlines()
+        rows = [[cell.strip() for cell in line.strip("| ").split("|")]
+                for line in lines if line.startswith("|") and not line.startswith("|--")]
+        found[title] = rows
+    return found
+
+
+def number(cell):
+    try:
+        return float(cell)
+    except ValueError:
+        return None
+
+
+def same(new, old):
+    """Whether two cells say the same."""
+    a, b = number(new), number(old)
+    if a is None or b is None:
+        return new == old
+    return max(abs(a), abs(b)) < ROUND_OFF or abs(a - b) <= CLOSE * max(abs(a), abs(b))
+
+
+def check_tables(made, stored):
+    assert list(made) == list(stored), (list(made), list(stored))
+    for title, rows in made.items():
+        assert len(rows) == len(stored[title]), title
+        timed = [bool(TIMES.search(cell)) for cell in rows[0]]
+        for row, before in zip(rows, stored[title]):
+            for column, cell, old in zip(rows[0], row, before):
+                if not TIMES.search(title) and not timed[rows[0].index(column)]:
+                    assert same(cell, old), f"{title}: {row[0]}, {column}: {cell}, stored {old}"
+
+
 def largest_error(run):
     with open(run / "verify" / "summary.csv", newline="", encoding="utf-8") as file:
         return float(next(csv.DictReader(file))["lambda_max"])
 
 
-def main(binaries, case, out, script="study.py"):
+def main(binaries, case, out, script="study.py", *words):
+    if script == "--write":
+        script, words = "study.py", (script,)
     name = case.name if script == "study.py" else f"{case.name}/{Path(script).stem}"
     shutil.rmtree(out, ignore_errors=True)
     subprocess.run([sys.executable, case / "study" / script, binaries, out, *FEW[name]], check=True,
@@ -49,8 +98,13 @@ def main(binaries, case, out, script="study.py"):
     if script == "study.py":
         assert "Order of the constants: 0 exceptions" in tables, tables
     assert tables.count("### ") == TABLES[name], tables
+    stored = STORED / f"{name.replace('/', '_')}.md"
+    if words == ("--write",):
+        stored.parent.mkdir(exist_ok=True)
+        stored.write_text(tables, encoding="utf-8")
+    check_tables(tables_of(tables), tables_of(stored.read_text(encoding="utf-8")))
     for figure in FIGURES[name]:
-        assert (out / "figures" / f"{figure}.png").stat().st_size > 10000, figure
+        assert (out / "figures" / f"{figure}.png").is_file(), figure
     for better, worse in RUNS[name]:
         errors = largest_error(out / better), largest_error(out / worse)
         assert errors[0] < errors[1], (better, worse, errors)

@@ -209,7 +209,7 @@ def configurations(directory, radius="0.7"):
 def draw_all(study, runs, directory):
     directory.mkdir(exist_ok=True)
     for radius in RADII:
-        study.call("solve", "-case", study.case, "-mu", radius, "-vtu",
+        study.call("solve", "-case", *study.case, "-mu", radius, "-vtu",
                    directory / f"truth_{radius}.vtu")
     laws(directory)
     bases(runs, directory)

@@ -29,7 +29,7 @@ def solution(study, directory):
     """Deformed bodies at radius 0.9; pressures at five radii with both ways to integrate."""
     for variant in ("intersection", "direct"):
         for radius in (*RADII, "0.9"):
-            study.call("solve", "-case", study.case, *study.variants[variant], "-mu", radius,
+            study.call("solve", "-case", *study.case, *study.variants[variant], "-mu", radius,
                        "-vtu", directory / f"{variant}_{radius}.vtu")
     figure, axes = plt.subplots(1, 4, figsize=(15, 4), constrained_layout=True,
                                 gridspec_kw={"width_ratios": [0.9, 1.2, 1.2, 1.2]})
