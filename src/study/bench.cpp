@@ -133,10 +133,18 @@ BenchRow bench_solver(Problem &problem, const HfOptions &options, const std::vec
   set.resize(std::min(count, set.size()));
   std::vector<HfSolution> answers;
   std::vector<Outputs> outputs;
-  const std::vector<double> seconds = seconds_each(set, [&](const Mu &mu) {
-    if (cold) solver.forget();
-    answers.push_back(solver.solve(mu));
-  });
+  std::vector<double> seconds;
+  try {
+    seconds = seconds_each(set, [&](const Mu &mu) {
+      if (cold) solver.forget();
+      answers.push_back(solver.solve(mu));
+    });
+  } catch (const Error &error) {
+    BenchRow row;
+    row.method = solver_name(problem, options, cold);
+    row.includes = std::string("no answer: ") + error.what();
+    return row;
+  }
   for (std::size_t p = 0; p < answers.size(); ++p) {
     errors.add(answers[p].u, answers[p].lambda, truths[p]);
     outputs.push_back(answers[p].outputs);

@@ -49,8 +49,8 @@ std::vector<std::string> cells(const BenchRow &row, double best) {
   return {row.method,
           row.includes,
           std::to_string(row.queries),
-          milliseconds(row.median),
-          milliseconds(row.slow),
+          row.queries > 0 ? milliseconds(row.median) : "",
+          row.queries > 0 ? milliseconds(row.slow) : "",
           error_text(row.u_mean),
           error_text(row.u_max),
           error_text(row.lambda_mean),
@@ -116,7 +116,7 @@ std::vector<BenchRow> bench_baselines(Problem &problem, const ToolOptions &optio
   for (BenchRow &part : follows ? bench_iterations(problem, truths) : bench_parts(problem, truths))
     rows.push_back(std::move(part));
   rows.push_back(bench_solver(problem, hf, truths, truths.size(), From::cold));
-  if (follows) return rows;
+  if (follows || !problem.free_bodies().empty()) return rows; // Uzawa's steps take no end there
   hf.method = HfMethod::uzawa;
   hf.uzawa_accelerated = true;
   rows.push_back(bench_solver(problem, hf, truths, few, From::cold));
@@ -147,6 +147,7 @@ void bench(const ToolOptions &options, const ReducedModel &model, int ranks) {
   const std::vector<Sample> &truths = sweep.samples;
 
   std::vector<BenchRow> rows = bench_baselines(problem, options, truths);
+  if (rows.front().queries == 0) throw failure(rows.front().includes);
   const double best = rows.front().median, offline = offline_seconds(model, snapshots);
   rows.push_back(bench_interpolation(problem, snapshots, truths));
   for (BenchRow &row : bench_models(problem, model, truths, offline))

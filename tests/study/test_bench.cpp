@@ -50,6 +50,18 @@ TEST(Bench, ErrorsVanishAtTheSnapshotsAndNotBetween) {
   EXPECT_GT(coarse.outputs_max, 1e-3);
 }
 
+TEST(Bench, ASolverWithoutAnAnswerSaysWhyAndHasNoTimes) {
+  Problem problem(PETSC_COMM_SELF, make_scene("membrane_obstacle"), {});
+  const std::vector<Sample> truths = solved(problem, {{0.2, 0, 0}});
+  HfOptions options;
+  options.method = HfMethod::uzawa;
+  options.uzawa_max_iterations = 1;
+  const BenchRow row = bench_solver(problem, options, truths, 1, From::cold);
+  EXPECT_EQ(row.queries, 0);
+  EXPECT_LT(row.u_max, 0);
+  EXPECT_NE(row.includes.find("no answer: no convergence"), std::string::npos) << row.includes;
+}
+
 TEST(Bench, OutputsAreComparedWithTheRangeOfTheirTrueValues) {
   const auto outputs = [](double energy, double force) {
     Outputs result;

@@ -35,8 +35,8 @@ double quantile(std::vector<double> values, double fraction);
 /// What a high-fidelity solve starts from: the active set of the one before, or none.
 enum class From { last, cold };
 
-/// High-fidelity solves at the first `count` truths. Collective on the problem's communicator, as
-/// are the next three.
+/// High-fidelity solves at the first `count` truths; where one fails, a row without queries that
+/// says why. Collective on the problem's communicator, as are the next three.
 BenchRow bench_solver(Problem &problem, const HfOptions &options, const std::vector<Sample> &truths,
                       std::size_t count, From from);
 
