@@ -71,16 +71,16 @@ class Mesh:
         """Nodes from the line `inner` to the line `outer`, both 2 x (2 n + 1), at these shares of the way."""
         self.block(*(inner[:, :, None] + (outer - inner)[:, :, None] * share), region, body)
 
-    def quarter_disk(self, radius, low, high, out, place, body=0):
+    def quarter_disk(self, radius, low, high, out, place, body=0, region=0):
         """From its lowest point, at angles `low` up to 45 degrees and `high` from there to the flat side;
         out: from the square amid it (0) to the arc (1); place: where of (x, y) about its centre."""
         side = radius / 2
         across, up = side * low / (np.pi / 4), side * (high / (np.pi / 4) - 2)
-        self.block(*place(*np.meshgrid(across, up, indexing="ij")), 0, body)
+        self.block(*place(*np.meshgrid(across, up, indexing="ij")), region, body)
         sides = (low, (across, np.full_like(low, -side))), (high, (np.full_like(high, side), up))
         for angle, inner in sides:
             arc = radius * np.array([np.sin(angle), -np.cos(angle)])
-            self.between(np.array(place(*inner)), np.array(place(*arc)), out, 0, body)
+            self.between(np.array(place(*inner)), np.array(place(*arc)), out, region, body)
 
     def done(self):
         self.points = np.array(self.points)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """rigid_disk.py [CASE_DIR]: the half-disk of cases/rigid_disk on its rigid disk by another program: without
-friction, with Tresca's and with Coulomb's. Without CASE_DIR it prints values, with it compares those of
+friction, with Tresca's and with Coulomb's, and with a core of another stiffness. Without CASE_DIR it prints values, with it compares those of
 expected.csv.
 
 Half of the body, u_x = 0 on x = 0, on a mesh with the lowest point and the clamped corner in finer sides
@@ -17,10 +17,12 @@ import scipy.sparse as sparse
 
 from plane_contact import Contact, Mesh, graded, main, plane_strain, shares, stiffness
 
-INDENTATION, GAP = 0.09, 0.001
-LAWS = {"": ("coulomb", 0.2), "-friction_coefficient 0.1": ("coulomb", 0.1), "-friction none": ("none", 0),
-        "-friction tresca": ("tresca", 0.1)}
-AT = [(radius, *law) for law in LAWS.values() for radius in (0.7, 1.0, 1.3)]
+INDENTATION, GAP, CORE = 0.09, 0.001, 0.6
+LAWS = {  # law, its bound, stiffness of the core
+    "": ("coulomb", 0.2, 1), "-friction_coefficient 0.1": ("coulomb", 0.1, 1),
+    "-friction none": ("none", 0, 1), "-friction tresca": ("tresca", 0.1, 1),
+    "-friction none -core_stiffness 0.2": ("none", 0, 0.2), "-friction none -core_stiffness 5": ("none", 0, 5)}
+AT = [(radius, *law) for law in LAWS.values() for radius in ((0.7, 1.0, 1.3) if law[2] == 1 else (1.0,))]
 RELATIVE = {"energy": 1.5e-5, "normal_force": 2e-5, "tangential_force": 5e-4, "peak_pressure": 1e-3}
 
 
@@ -32,14 +34,17 @@ def stated(mu, quantity, value):
 
 
 @functools.lru_cache
-def body(n):
-    """Of radius 1: the contact, its angles from the lowest point, and the share of its nodes in the arc."""
+def body(n, core):
+    """Of radius 1, with a core of radius CORE: the contact, its angles from the lowest point, and the share of its nodes in the arc."""
     mesh = Mesh()
     low = np.concatenate([graded(0, np.pi / 8, 12 * n, ""), graded(np.pi / 8, np.pi / 4, 2 * n, "")[1:]])
-    mesh.quarter_disk(1, low, graded(np.pi / 4, np.pi / 2, 3 * n, "end"), graded(0, 1, 3 * n, "end"),
-                      lambda x, y: (x, y))
+    high = graded(np.pi / 4, np.pi / 2, 3 * n, "end")
+    mesh.quarter_disk(CORE, low, high, graded(0, 1, 2 * n, "end"), lambda x, y: (x, y), region=1)
+    for angle in (low, high):
+        arc = np.array([np.sin(angle), -np.cos(angle)])
+        mesh.between(CORE * arc, arc, graded(0, 1, 4 * n, "both"), 0)
     mesh.done()
-    matrix = stiffness(mesh, {0: plane_strain(15, 0.35)})
+    matrix = stiffness(mesh, {0: plane_strain(15, 0.35), 1: plane_strain(15 * core, 0.35)})
     flat, axis = mesh.nodes(lambda x, y: abs(y) < 1e-9), mesh.nodes(lambda x, y: abs(x) < 1e-9)
     arc = mesh.nodes(lambda x, y: (abs(np.hypot(x, y) - 1) < 1e-9) & (x < np.sin(np.pi / 8) + 1e-9))
     angle = np.arcsin(mesh.points[arc, 0])
@@ -56,8 +61,8 @@ def body(n):
 
 
 def values_at(mu, n):
-    radius, law, bound = mu
-    matrix, contact, angle, share = body(n)
+    radius, law, bound, core = mu
+    matrix, contact, angle, share = body(n, core)
     x, y = radius * np.sin(angle), -radius * np.cos(angle)
     from_middle = np.array([x, y + radius + GAP + 1])
     to_closest = (1 / np.hypot(*from_middle) - 1) * from_middle
