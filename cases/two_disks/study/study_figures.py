@@ -5,8 +5,10 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_constants, draw_greedy, history,
-                          log_axis, plt, read_grid, save, step_values, table)
+from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_constants, draw_greedy,
+                          draw_tolerances, history, log_axis, plt, read_grid, save, step_values, table)
+from panels import legend_below
+from study_tools import summary
 from solution_figures import draw_bodies
 
 import numpy as np
@@ -29,7 +31,7 @@ def solution(study, directory):
     """Deformed bodies at radius 0.9; pressures at five radii with both ways to integrate."""
     for variant in ("intersection", "direct"):
         for radius in (*RADII, "0.9"):
-            study.call("solve", "-case", study.case, *study.variants[variant], "-mu", radius,
+            study.call("solve", "-case", *study.case, *study.variants[variant], "-mu", radius,
                        "-vtu", directory / f"{variant}_{radius}.vtu")
     figure, axes = plt.subplots(1, 4, figsize=(15, 4), constrained_layout=True,
                                 gridspec_kw={"width_ratios": [0.9, 1.2, 1.2, 1.2]})
@@ -76,12 +78,19 @@ def bases(runs, directory):
 
 
 def greedy(runs, directory):
-    figure, axes = plt.subplots(2, 2, figsize=(10, 6), constrained_layout=True)
+    figure, axes = plt.subplots(2, 3, figsize=(13, 7), constrained_layout=True)
     for row, variant in zip(axes, ("intersection", "direct")):
         for pair, colour in zip(PAIRS, (BLUE, ORANGE, GREEN)):
             steps = table(runs[variant, pair, "tight"], "stability.csv")
             loose = table(runs[variant, pair, "loose"], "stability.csv")
-            draw_greedy(row, steps, loose, colour, f"({pair[0]}, {pair[1]})", 1e-6)
+            draw_greedy(row[:2], steps, loose, colour, f"({pair[0]}, {pair[1]})", 1e-6)
+            draw_tolerances(row[2], pair, {
+                tolerance: (runs[variant, pair, tolerance], summary(runs[variant, pair, tolerance]))
+                for tolerance in ("tight", "loose")}, colour, "radius")
+        row[2].set_xlabel("radius (m)")
+        row[2].set_ylabel("inf-sup constant")
+        row[2].set_title(r"$\beta_{off}$, both tolerances", loc="left")
+        legend_below(row[2], row[2].lines)
         row[0].set_ylim(0, 1.05)
         row[0].set_xlabel("supremizers")
         row[0].set_title(rf"largest $\sigma$, {variant}; dots: loose tolerance", loc="left")
