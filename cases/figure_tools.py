@@ -303,3 +303,10 @@ def draw_tolerances(axis, pair, runs, colour, over=None):
         order = np.argsort(x)
         axis.plot(x[order], beta["beta_off"][order], style, color=colour,
                   label=f"({pair[0]}, {pair[1]}), {tolerance}: S = {sizes['S']:.0f}")
+
+
+def end_tolerances(axis, xlabel):
+    axis.set_xlabel(xlabel)
+    axis.set_ylabel("inf-sup constant (-)")
+    axis.set_title(r"$\beta_{off}$, both tolerances", loc="left")
+    axis.legend(loc="upper left", bbox_to_anchor=(1, 1), title="(N, R)")

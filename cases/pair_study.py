@@ -69,9 +69,9 @@ def cone_constants(runs, keys, scene_of, most):
     text = markdown(f"Over the cone, over its span: largest c_HF and smallest beta of {len(mus[::every])} "
                     "validation mu", ["variant", "(N, R)", "norms", "c_HF", *("beta_" + name.replace(
                         "hf", "HF") for name in NAMES)], rows)
-    return text + (f"\nUpper values over the cone that no lower one meets: {opened} of {compared}; exceptions "
-                   f"from the order: {disorder}. Over the span rbvi verify has the same to {short(apart)} of "
-                   "beta_on.\n")
+    return text + (f"\nUpper values over the cone that no lower one meets: {opened} of {compared}; "
+                   f"exceptions from the order: {disorder}. Over the span rbvi verify has the same to "
+                   f"{short(apart)} of beta_on.\n")
 
 
 def errors_over(problems, truths, basis, x):
@@ -104,7 +104,7 @@ def enlarged_cones(runs, keys, scene_of):
                 cells.append(f"{short(cone_error(w, x, training))}, {short(gram_condition(w, x))}")
             rows.append([variant, name, *cells[:-1], f"{run.generators.shape[1]}: {cells[-1]}",
                          *errors_over(problems, truths, run.basis, x)])
-    return markdown("Enlarged cones: e(R) over the training set, Gram condition; errors of the models with all R",
+    return markdown("Enlarged cones: e(R) over the training set, Gram condition; errors of models with all R",
                     ["variant", "cone", *(f"R = {count}" for count in RADII), "all R", "u mean / max",
                      "lambda mean / max"], rows)
 
@@ -185,7 +185,7 @@ def solving_costs(study, runs, keys, scene_of, tolerance, published):
         threshold = max(0, int(np.ceil((off - on) / (each - less) * count))) if each > less else "-"
         rows.append([variant, f"({pair[0]}, {pair[1]})", f"{on:.2f}", f"{off:.2f}", f"{each:.2f}",
                      f"{less:.2f}", threshold, published[pair]])
-    return markdown(f"Supremizers solved for by each query: CPU seconds offline without the sweep, and of {count} "
-                    "queries",
+    return markdown("Supremizers solved for by each query: CPU seconds offline without the sweep, and of "
+                    f"{count} queries",
                     ["variant", "(N, R)", "offline, on", "offline, off", "queries, on", "queries, off",
                      "benefit threshold", "published"], rows)

@@ -203,7 +203,7 @@ def enlarged_cone(w, x):
 
 
 def orthonormal(product, basis, columns):
-    """A basis orthonormal in the product and columns, those that are in its span but for round-off left out."""
+    """A basis orthonormal in the product and columns, without those in its span but for round-off."""
     for _ in range(2):
         columns = columns - basis @ (basis.T @ (product @ columns))
     values, vectors = np.linalg.eigh(columns.T @ (product @ columns))
@@ -241,7 +241,7 @@ def query_seconds(operators, solve, modes, x, mus):
 
 
 class Problem:
-    """All of (2.7) at one mu, and the sizes that residuals are relative to."""
+    """All of (2.7) at one mu, V and W with the products of the reference domain."""
 
     def __init__(self, operators, space, mu):
         self.a, self.f, self.b, self.g = (getattr(operators, name)(mu) for name in "afbg")
@@ -268,6 +268,7 @@ class Problem:
     def errors(self, basis, x, u, lam):
         """Relative, of u in V and of lambda in W, against an exact answer."""
         found = self.answer(basis, x)
+
         def sizes(v, multiplier):
             return np.array([np.sqrt(v @ (self.space.product @ v)),
                              np.linalg.norm(self.w_lower.T @ multiplier)])
@@ -293,14 +294,10 @@ class DoubleGreedy:
         size = np.sqrt(self.lam[:, k] @ self.w @ self.lam[:, k])
         self.x = np.column_stack([self.x, self.lam[:, k] / size])
 
-    def stability(self):
-        """beta_off / beta_on of every problem, and the multiplier with which beta_off is reached."""
-        return stability(self.problems, self.w, self.basis, self.x)
-
     def stabilise(self):
         """Returns the smallest beta_off / beta_on."""
         while True:
-            ratios, worst = self.stability()
+            ratios, worst = stability(self.problems, self.w, self.basis, self.x)
             k = int(np.argmin(ratios))
             if ratios[k] >= self.fraction:
                 return ratios[k]
@@ -330,10 +327,12 @@ def stability(problems, w, basis, x):
     x = x @ orthonormal_combinations(dual_factor(w, x))
     ratios, worst = np.empty(len(problems)), []
     space = problems[0].space
-    top = basis[space.contact].T
+    top, traces = basis[space.contact].T, space.responses[space.contact]
     for k, problem in enumerate(problems):
         forces = problem.b.T @ x
-        on = np.linalg.svd(space.lower.T @ forces, compute_uv=False)[-1]
+        pushed = np.flatnonzero(np.abs(forces).max(axis=1))
+        work = traces[np.ix_(pushed, pushed)] @ forces[pushed]
+        on = np.sqrt(np.linalg.eigvalsh(forces[pushed].T @ work)[0])
         stretch, right = np.linalg.svd(top @ forces, full_matrices=top.shape[0] < x.shape[1])[1:]
         ratios[k] = stretch[-1] / on if len(stretch) == x.shape[1] else 0.0
         worst.append(x @ right[-1])

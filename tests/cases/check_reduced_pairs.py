@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Cones, constants and the double greedy algorithm of cases/reduced_pairs.py: closed forms, all faces of
-a cone one by one, and a string over an obstacle.
+a cone one by one, and a string over an obstacle; masses and stiffnesses of cases/study_matrices.py.
 
     check_reduced_pairs.py ROOT
 """
@@ -16,7 +16,9 @@ import scipy.sparse as sparse
 sys.path.insert(0, str(Path(sys.argv[1]) / "cases"))
 
 from reduced_pairs import (DoubleGreedy, Problem, Space, cone_constant, cone_error, constants, descend,
-                           enlarged_cone, high_fidelity_constants, orthonormal, pairwise_bound, quotient, stability)
+                           enlarged_cone, high_fidelity_constants, orthonormal, pairwise_bound, quotient,
+                           stability)
+from study_matrices import mass, stiffness
 
 RNG = np.random.default_rng(7)
 
@@ -83,6 +85,19 @@ def enlarged():
         assert cone_error(gram, x, wide) > 1e-3, "it is larger"
 
 
+def matrices():
+    """Masses sum up to the area, a linear function has the energy |grad|^2 area, and a mesh twice as large
+    has four times the masses and the same stiffness: what the norms of the domain of mu rest on."""
+    points = np.array([[0.0, 0], [2, 0], [2, 1], [0, 1], [0.7, 0.4]])
+    cells = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
+    weights, energy = mass(points, cells, 5), stiffness(points, cells)
+    assert np.isclose(weights.sum(), 2) and np.isclose(points[:, 0] @ weights @ points[:, 0], 8 / 3)
+    linear = points @ [3, -1]
+    assert np.isclose(linear @ energy @ linear, 10 * 2) and np.allclose(energy @ np.ones(5), 0)
+    assert np.allclose(mass(2 * points, cells, 5).toarray(), 4 * weights.toarray())
+    assert np.allclose(stiffness(2 * points, cells).toarray(), energy.toarray())
+
+
 class String:
     """-u'' = -1 on (0, 1), u = 0 at its ends, u >= psi(mu); b is a mass matrix that mu weights."""
 
@@ -146,5 +161,5 @@ def greedy():
 
 
 if __name__ == "__main__":
-    for check in (two_dimensions, faces, enlarged, greedy):
+    for check in (two_dimensions, faces, enlarged, matrices, greedy):
         check()

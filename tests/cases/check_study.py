@@ -56,8 +56,8 @@ def numbers_in(cell):
 def check_pairs(tables):
     """Over the cone the constants are known, in their order and above those of the span; the enlarged
     cone is as accurate as its own; the double greedy is stable; queries that solve are dearer."""
-    found = re.search(r"no lower one meets: (\d+) of \d+; exceptions from the order: (\d+)\. Over the span rbvi "
-                      r"verify has the same to (\S+) of", tables)
+    found = re.search(r"no lower one meets: (\d+) of \d+; exceptions from the order: (\d+)\. Over the span "
+                      r"rbvi verify has the same to (\S+) of", tables)
     assert found.group(1) == found.group(2) == "0" and float(found.group(3)) < 1e-9, found.group()
     for row in table_of(tables, "Over the cone"):
         for name in ("beta_HF", "beta_on", "beta_off", "beta_dec"):

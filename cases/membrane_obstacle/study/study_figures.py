@@ -6,9 +6,9 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_constants, draw_greedy,
-                          draw_tolerances, history, log_axis, plt, save, table)
+                          draw_tolerances, end_tolerances, history, log_axis, plt, save, table)
 from figures import contact_cells, mesh_quality_panels
-from panels import Triangles, legend_below, save_panels
+from panels import Triangles, save_panels
 
 import numpy as np
 
@@ -74,7 +74,7 @@ def floors(runs, rows_of, directory):
 
 def greedy(runs, rows_of, directory):
     """sigma and beta along the projected greedy; the two bounds; beta_off at both tolerances."""
-    figure, axes = plt.subplots(2, 4, figsize=(16, 7), constrained_layout=True)
+    figure, axes = plt.subplots(2, 4, figsize=(17, 6), constrained_layout=True)
     for row, disc_map in zip(axes, ("similarity", "graded")):
         for pair, colour in zip(PAIRS, (BLUE, ORANGE, GREEN)):
             steps = table(runs[disc_map, pair, "tight"], "stability.csv")
@@ -87,10 +87,7 @@ def greedy(runs, rows_of, directory):
             draw_tolerances(row[3], pair, {
                 tolerance: (runs[disc_map, pair, tolerance], rows_of(runs[disc_map, pair, tolerance]))
                 for tolerance in ("tight", "loose")}, colour)
-        row[3].set_xlabel("validation parameters, sorted")
-        row[3].set_ylabel("inf-sup constant")
-        row[3].set_title(r"$\beta_{off}$, both tolerances", loc="left")
-        legend_below(row[3], row[3].lines)
+        end_tolerances(row[3], "validation parameters, sorted")
         log_axis(row[0], "supremizers", r"largest $\sigma$", f"{disc_map}; dots: loose tolerance")
         log_axis(row[1], "supremizers", r"smallest $\beta_{off}$", "inf-sup constant")
         row[2].set_ylim(0, 1.05)

@@ -178,8 +178,7 @@ def work(study):
                              scene_of, 10),
               enlarged_cones(runs, [("intersection", ("intersection", "cpg 1e-3"),
                                      ("intersection", "mcpg 1e-3"))], scene_of),
-              double_greedy(runs, [(("intersection", pair, "loose"), PAIRS[pair])
-                                   for pair in ((46, 12), (46, 70))], scene_of),
+              double_greedy(runs, [(("intersection", (46, 12), "loose"), PAIRS[46, 12])], scene_of),
               solving_costs(study, runs, timed(study), scene_of, TIGHT, THRESHOLDS)]
     if not study.options:
         tables.insert(0, meshes(study))

@@ -6,10 +6,10 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_constants, draw_greedy,
-                          draw_tolerances, history, log_axis, plt, read_grid, save, step_values, table)
-from panels import legend_below
-from study_tools import summary
+                          draw_tolerances, end_tolerances, history, log_axis, plt, read_grid, save,
+                          step_values, table)
 from solution_figures import draw_bodies
+from study_tools import summary
 
 import numpy as np
 
@@ -78,7 +78,7 @@ def bases(runs, directory):
 
 
 def greedy(runs, directory):
-    figure, axes = plt.subplots(2, 3, figsize=(13, 7), constrained_layout=True)
+    figure, axes = plt.subplots(2, 3, figsize=(14, 6), constrained_layout=True)
     for row, variant in zip(axes, ("intersection", "direct")):
         for pair, colour in zip(PAIRS, (BLUE, ORANGE, GREEN)):
             steps = table(runs[variant, pair, "tight"], "stability.csv")
@@ -87,10 +87,7 @@ def greedy(runs, directory):
             draw_tolerances(row[2], pair, {
                 tolerance: (runs[variant, pair, tolerance], summary(runs[variant, pair, tolerance]))
                 for tolerance in ("tight", "loose")}, colour, "radius")
-        row[2].set_xlabel("radius (m)")
-        row[2].set_ylabel("inf-sup constant")
-        row[2].set_title(r"$\beta_{off}$, both tolerances", loc="left")
-        legend_below(row[2], row[2].lines)
+        end_tolerances(row[2], "radius (m)")
         row[0].set_ylim(0, 1.05)
         row[0].set_xlabel("supremizers")
         row[0].set_title(rf"largest $\sigma$, {variant}; dots: loose tolerance", loc="left")
