@@ -159,17 +159,16 @@ def program_seconds(study, *arguments, **program):
 
 
 def solving_costs(study, runs, keys, scene_of, tolerance, published):
-    """Queries that solve for their supremizers (2.17) against PGA, in CPU seconds of one core, at as many
-    training mu as the validation set has. Offline they have a factor of V in place of PGA. `keys`:
-    (variant, pair); `published`: the thresholds of the text."""
-    rows = []
+    """Queries that solve for their supremizers (2.17) against PGA, in CPU seconds of one core. Offline they
+    have a factor of V in place of PGA. `keys`: (variant, pair); `published`: the number of queries of the
+    text, and its thresholds."""
+    rows, (count, thresholds) = [], published
     for variant, pair in keys:
         run = runs[variant, pair, "tight"]
         scene = scene_of(run, variant)
         before = user_seconds()
         solve = factorised(scene.v())
         factor = user_seconds() - before
-        count = len(table(run, "errors.csv"))
         mus = np.resize(scene.run.training, (count, scene.run.training.shape[1]))
         each = query_seconds(scene, solve, scene.run.modes, scene.run.generators, mus)
         out = timed_run(study, variant)
@@ -184,7 +183,7 @@ def solving_costs(study, runs, keys, scene_of, tolerance, published):
                                out / "answers.csv", program="rbvi-online")
         threshold = max(0, int(np.ceil((off - on) / (each - less) * count))) if each > less else "-"
         rows.append([variant, f"({pair[0]}, {pair[1]})", f"{on:.2f}", f"{off:.2f}", f"{each:.2f}",
-                     f"{less:.2f}", threshold, published[pair]])
+                     f"{less:.2f}", threshold, thresholds[pair]])
     return markdown("Supremizers solved for by each query: CPU seconds offline without the sweep, and of "
                     f"{count} queries",
                     ["variant", "(N, R)", "offline, on", "offline, off", "queries, on", "queries, off",

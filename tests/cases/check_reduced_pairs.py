@@ -16,8 +16,8 @@ import scipy.sparse as sparse
 sys.path.insert(0, str(Path(sys.argv[1]) / "cases"))
 
 from reduced_pairs import (DoubleGreedy, Problem, Space, cone_constant, cone_error, constants, descend,
-                           enlarged_cone, high_fidelity_constants, orthonormal, pairwise_bound, quotient,
-                           stability)
+                           enlarged_cone, high_fidelity_constants, orthonormal,
+                           orthonormal_combinations, pairwise_bound, quotient, stability)
 from study_matrices import mass, stiffness
 
 RNG = np.random.default_rng(7)
@@ -37,6 +37,15 @@ def two_dimensions():
         assert np.isclose(upper, 1 if c > 0 else span), (c, upper)
         assert np.isclose(lower, upper), (c, lower)
         assert np.isclose(quotient(s, np.eye(2), a), upper) and a.min() >= 0
+
+
+def dependent():
+    """A generator in the span of those before is left out, one that is nearly there is not."""
+    c = RNG.normal(size=(8, 3))
+    c = np.column_stack([c, c @ [1, 2, 3], c @ [1, 1, 0] + 1e-4 * RNG.normal(size=8)])
+    back = orthonormal_combinations(c)
+    assert back.shape == (5, 4) and not back[3].any()
+    assert np.allclose((c @ back).T @ (c @ back), np.eye(4))
 
 
 def least_of_faces(s, c):
@@ -161,5 +170,5 @@ def greedy():
 
 
 if __name__ == "__main__":
-    for check in (two_dimensions, faces, enlarged, matrices, greedy):
+    for check in (two_dimensions, dependent, faces, enlarged, matrices, greedy):
         check()
