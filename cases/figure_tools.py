@@ -291,3 +291,22 @@ def draw_greedy(axes, tight, loose, colour, label, floor):
     for axis, column, least in zip(axes, ("sigma_max", "beta_min"), (1e-8, floor)):
         axis.plot(tight["S"], np.maximum(tight[column], least), color=colour, label=label)
         axis.plot(loose["S"][-1], loose[column][-1], "o", color=colour)
+
+
+def draw_tolerances(axis, pair, runs, colour, over=None):
+    """beta_off at the validation parameters with the supremizers of a tight and of a loose tolerance:
+    `runs` has the run and its summary of both. Over a parameter, or sorted."""
+    for tolerance, style in (("tight", "-"), ("loose", "--")):
+        run, sizes = runs[tolerance]
+        beta = table(run, "infsup.csv")
+        x = beta[over] if over else np.argsort(np.argsort(beta["beta_off"])).astype(float)
+        order = np.argsort(x)
+        axis.plot(x[order], beta["beta_off"][order], style, color=colour,
+                  label=f"({pair[0]}, {pair[1]}), {tolerance}: S = {sizes['S']:.0f}")
+
+
+def end_tolerances(axis, xlabel):
+    axis.set_xlabel(xlabel)
+    axis.set_ylabel("inf-sup constant (-)")
+    axis.set_title(r"$\beta_{off}$, both tolerances", loc="left")
+    axis.legend(loc="upper left", bbox_to_anchor=(1, 1), title="(N, R)")

@@ -5,10 +5,10 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_constants, draw_greedy, history,
-                          log_axis, plt, save, table)
-from figures import contact_cells
-from panels import Triangles
+from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_constants, draw_greedy,
+                          draw_tolerances, end_tolerances, history, log_axis, plt, save, table)
+from figures import contact_cells, mesh_quality_panels
+from panels import Triangles, save_panels
 
 import numpy as np
 
@@ -72,9 +72,9 @@ def floors(runs, rows_of, directory):
     save(figure, directory, "floors.png")
 
 
-def greedy(runs, directory):
-    """sigma and beta along the projected greedy; the two bounds."""
-    figure, axes = plt.subplots(2, 3, figsize=(12, 6), constrained_layout=True)
+def greedy(runs, rows_of, directory):
+    """sigma and beta along the projected greedy; the two bounds; beta_off at both tolerances."""
+    figure, axes = plt.subplots(2, 4, figsize=(17, 6), constrained_layout=True)
     for row, disc_map in zip(axes, ("similarity", "graded")):
         for pair, colour in zip(PAIRS, (BLUE, ORANGE, GREEN)):
             steps = table(runs[disc_map, pair, "tight"], "stability.csv")
@@ -84,6 +84,10 @@ def greedy(runs, directory):
             row[2].plot(steps["S"], steps["bound_min"], "--", color=colour)
             holds = steps["classic_min"] > 0
             row[2].plot(steps["S"][holds], steps["classic_min"][holds], ":", color=colour)
+            draw_tolerances(row[3], pair, {
+                tolerance: (runs[disc_map, pair, tolerance], rows_of(runs[disc_map, pair, tolerance]))
+                for tolerance in ("tight", "loose")}, colour)
+        end_tolerances(row[3], "validation parameters, sorted")
         log_axis(row[0], "supremizers", r"largest $\sigma$", f"{disc_map}; dots: loose tolerance")
         log_axis(row[1], "supremizers", r"smallest $\beta_{off}$", "inf-sup constant")
         row[2].set_ylim(0, 1.05)
@@ -165,8 +169,10 @@ def pressures(runs, directory):
 def draw_all(runs, summary, directory):
     bases(runs, directory)
     floors(runs, summary, directory)
-    greedy(runs, directory)
+    greedy(runs, summary, directory)
     constants(runs, directory)
     modes(runs, summary, directory)
     pairs(runs, directory)
     pressures(runs, directory)
+    save_panels(directory, "mesh_quality.png",
+                mesh_quality_panels(runs["similarity", "mcpg", "offline"]))

@@ -5,9 +5,11 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_constants, draw_greedy, history,
-                          log_axis, plt, read_grid, save, step_values, table)
+from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_constants, draw_greedy,
+                          draw_tolerances, end_tolerances, history, log_axis, plt, read_grid, save,
+                          step_values, table)
 from solution_figures import draw_bodies
+from study_tools import summary
 
 import numpy as np
 
@@ -76,12 +78,16 @@ def bases(runs, directory):
 
 
 def greedy(runs, directory):
-    figure, axes = plt.subplots(2, 2, figsize=(10, 6), constrained_layout=True)
+    figure, axes = plt.subplots(2, 3, figsize=(14, 6), constrained_layout=True)
     for row, variant in zip(axes, ("intersection", "direct")):
         for pair, colour in zip(PAIRS, (BLUE, ORANGE, GREEN)):
             steps = table(runs[variant, pair, "tight"], "stability.csv")
             loose = table(runs[variant, pair, "loose"], "stability.csv")
-            draw_greedy(row, steps, loose, colour, f"({pair[0]}, {pair[1]})", 1e-6)
+            draw_greedy(row[:2], steps, loose, colour, f"({pair[0]}, {pair[1]})", 1e-6)
+            draw_tolerances(row[2], pair, {
+                tolerance: (runs[variant, pair, tolerance], summary(runs[variant, pair, tolerance]))
+                for tolerance in ("tight", "loose")}, colour, "radius")
+        end_tolerances(row[2], "radius (m)")
         row[0].set_ylim(0, 1.05)
         row[0].set_xlabel("supremizers")
         row[0].set_title(rf"largest $\sigma$, {variant}; dots: loose tolerance", loc="left")

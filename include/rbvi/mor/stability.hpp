@@ -7,7 +7,8 @@
 //   a mode v_n     has coordinates  [ L^-1 E^T v_n ; K^T ],
 //                  K K^T = I - P^T P,  P = L^-1 E^T V_N
 //   b(mu; v, eta)  = eta^T B_c(mu) L y  for v with coordinates [ y ; z ].
-// Constants are over the span of the dual basis, a lower bound for the cone's (Niakh 2022, 2.3).
+// Constants are over the span of the dual basis, a lower bound for the cone's (Niakh 2022, 2.3),
+// which cases/reduced_pairs.py has.
 #pragma once
 
 #include "rbvi/core/dense.hpp"
