@@ -39,10 +39,9 @@ RUNS = {  # more accurate, less accurate
     "rigid_disk": [("radius/default", "radius/collocated")],
     "rigid_disk/nitsche_study": [("mixed/default", "none/default"), ("none/default", "pair/10_5")],
     "rigid_disk/large_study": [("none/default", "none/published")]}
-
-
 STORED = Path(__file__).parent / "studies"
 CLOSE, ROUND_OFF = 0.11, 1e-8  # of two digits the last one may change
+NUMBER = r"\d[\d.]*(?:e[-+]?\d+)?"
 TIMES = re.compile(r"\bms\b|\bs\b|second|time|threshold|faster|benefit|pays")
 
 
@@ -57,19 +56,15 @@ def tables_of(text):
     return found
 
 
-def number(cell):
-    try:
-        return float(cell)
-    except ValueError:
-        return None
+def numbers_in(cell):
+    return [float(number) for number in re.findall(NUMBER, cell)]
 
 
 def same(new, old):
-    """Whether two cells say the same."""
-    a, b = number(new), number(old)
-    if a is None or b is None:
-        return new == old
-    return max(abs(a), abs(b)) < ROUND_OFF or abs(a - b) <= CLOSE * max(abs(a), abs(b))
+    """Whether two cells say the same: words, and numbers."""
+    return re.sub(NUMBER, "#", new) == re.sub(NUMBER, "#", old) and all(
+        max(a, b) < ROUND_OFF or abs(a - b) <= CLOSE * max(a, b)
+        for a, b in zip(numbers_in(new), numbers_in(old)))
 
 
 def check_tables(made, stored):
@@ -92,10 +87,6 @@ def table_of(tables, title):
     """Rows of one table as {column: cell}."""
     head, *rows = next(rows for name, rows in tables_of(tables).items() if name.startswith(title))
     return [dict(zip(head, row)) for row in rows]
-
-
-def numbers_in(cell):
-    return [float(number) for number in re.findall(r"\d[\d.]*(?:e[-+]\d+)?", cell)]
 
 
 def check_pairs(tables):
