@@ -14,10 +14,10 @@ import numpy as np
 RADII = ("0.7", "1", "1.3")
 FRICTION = 0.2
 SHOWN = 0.25  # of the arc: a little more than is ever in contact
-SIZES = {"text": ("(30, 20, 20)", ORANGE), "published": ("-variant published", BLUE)}
+SIZES = {"text": ("(30, 20, 20)", ORANGE), "published": ("published tolerances", BLUE)}
 MODELS = {  # of the tangential stress
     "as published": ("(30, 20, 20), 20 pairs", ORANGE, "--"),
-    "published": ("-variant published", BLUE, "-"),
+    "published": ("published tolerances", BLUE, "-"),
     "default": ("condensed", GREEN, "-"),
 }
 
@@ -183,7 +183,7 @@ def tangential(study, runs, directory):
 def draw_all(study, runs, directory):
     directory.mkdir(exist_ok=True)
     for radius in RADII:
-        study.call("solve", "-case", study.case, "-mu", radius, "-vtu",
+        study.call("solve", "-case", *study.case, "-mu", radius, "-vtu",
                    directory / f"truth_{radius}.vtu")
     laws(directory)
     bases(runs, directory)
