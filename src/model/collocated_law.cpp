@@ -12,6 +12,8 @@ namespace {
 constexpr double ridge = 1e-12;
 
 constexpr double mended_above = 1e-6; ///< violation of the law at all nodes
+/// Steps are cheap here, and along nearly dependent generators some 20000 are needed.
+constexpr UzawaOptions uzawa_options{.max_iterations = 200000};
 
 } // namespace
 
@@ -41,19 +43,29 @@ CollocatedSolver::CollocatedSolver(const ReducedModel &model, const Scene &scene
                                    const Contact &contact, const QueryOptions &options)
     : model_(model), scene_(scene), options_(options),
       at_nodes_(model, scene, contact, options, false),
-      starts_(scene.parameters, model.contact.law->starts_mu) {}
+      starts_(scene.parameters, model.contact.law->starts_mu) {
+  if (options.method != OnlineMethod::uzawa) return;
+  const Matrix functions =
+      model.contact.dual_basis * multiplier_coefficients(model.contact.law->basis);
+  product_ = functions.transpose() * (contact.w_product() * functions);
+}
 
 CollocatedResult CollocatedSolver::solve_functions(const LawAtMu &law, const Vector &start) {
-  CollocatedResult found = solve_collocated(
-      collocated_problem(model_.contact.law->basis, law, at_nodes_.problem().body()), start);
+  const bool by_uzawa = product_.size() > 0;
+  const CollocatedProblem problem =
+      collocated_problem(model_.contact.law->basis, law, at_nodes_.problem().body());
+  CollocatedResult found = by_uzawa ? solve_collocated_by_uzawa(problem, product_, uzawa_options)
+                                    : solve_collocated(problem, start);
   if (!found.converged)
     throw failure("the reduced law of contact is not solved: " + found.reason +
-                  "; reduce again with -multiplier_reduction condensed, or with more functions");
+                  (by_uzawa ? "; ask by the method exact, or reduce again with fewer functions"
+                            : "; reduce again with -multiplier_reduction condensed, or with more "
+                              "functions"));
   return found;
 }
 
 Vector CollocatedSolver::start(const FullMu &mu) {
-  if (options_.warm) return last_;
+  if (options_.warm || product_.size() > 0) return last_;
   return starts_.nearest(parts_of_box(scene_.parameters, mu), [&](Index sample) {
     const Vector there = model_.contact.law->starts_mu.col(sample);
     ReducedAnswer unused;
@@ -66,7 +78,7 @@ Vector CollocatedSolver::start(const FullMu &mu) {
 bool CollocatedSolver::answer_on_functions(const LawAtMu &law, const Vector &start,
                                            ReducedAnswer &answer) {
   const bool checks = model_.contact.law->condensed.terms.size() > 0;
-  const bool mends = model_.contact.law->mended && checks;
+  const bool mends = model_.contact.law->mended && checks && product_.size() == 0;
   try {
     CollocatedResult reduced = solve_functions(law, start);
     const Matrix functions = multiplier_coefficients(model_.contact.law->basis);

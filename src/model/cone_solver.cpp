@@ -143,6 +143,7 @@ void ConeSolver::solve_following(ReducedAnswer &answer) {
   constexpr int most_steps = 60;
   constexpr double tolerance = 1e-9;
   Vector state = undeformed(contact_, scene_, answer.mu), last_x;
+  const bool accelerates = options_.method != OnlineMethod::kacanov;
   Anderson anderson(3);
   std::vector<Vector> images;
   int iterations = 0;
@@ -162,6 +163,10 @@ void ConeSolver::solve_following(ReducedAnswer &answer) {
     }
     last_x = answer.lambda;
     last_change = change.norm();
+    if (!accelerates) {
+      state = std::exchange(images, {}).back();
+      continue;
+    }
     const Vector shares = anderson.combine(change);
     if (std::ssize(images) > shares.size()) images.erase(images.begin());
     state.setZero();

@@ -31,6 +31,7 @@ FollowingSolver::FollowingSolver(const ReducedModel &model, const Scene &scene,
       rows_are_identity_(model.contact.dual_basis.isIdentity(0)),
       w_product_(evaluated_.rows() * contact.w_product() * evaluated_.rows().transpose()),
       starts_(model, scene, options.warm) {
+  if (options.method == OnlineMethod::kacanov) steps_.method = NonlinearMethod::kacanov;
   const ContactInterface *nodal = nodal_interface(contact);
   if (nodal != nullptr && rows_are_identity_) nodal_.emplace(nodal->averages());
 }
@@ -62,8 +63,9 @@ ReducedAnswer FollowingSolver::solve(const FullMu &mu, const Relaxed &relaxed) {
     load = at_mu_.half_response(at_mu_.load());
     problem.free = model_.contact.trace * at_mu_.transposed_half_response(load);
   }
-  NonlinearOptions options{.economical = true};
-  if (!nodal_ && has_curvature(contact_) && !problem.laws.has_tangents())
+  NonlinearOptions options = steps_;
+  if (!nodal_ && has_curvature(contact_) && !problem.laws.has_tangents() &&
+      options.method == NonlinearMethod::automatic)
     options.tolerance = 1e-8; // the change after it is of second order
   FollowedContact followed{
       .contact = contact_, .mu = mu, .rows = rows_are_identity_ ? nullptr : &evaluated_.rows()};

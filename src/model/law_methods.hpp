@@ -26,7 +26,8 @@ private:
   LawStarts starts_;
 };
 
-/// On fewer functions. From the answer on them at the nearest training sample.
+/// On fewer functions. From the answer on them at the nearest training sample; by Uzawa's method
+/// from zero, and then never mended.
 class CollocatedSolver : public QueryMethod {
 public:
   CollocatedSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
@@ -44,7 +45,8 @@ private:
   const QueryOptions options_;
   NodeLawSolver at_nodes_;
   SampleStarts<Vector> starts_;
-  Vector last_; ///< CollocatedResult::x of the last query
+  Vector last_;    ///< CollocatedResult::x of the last query
+  Matrix product_; ///< Gram matrix of the functions in W, for Uzawa's method
 };
 
 /// At every node, contact that follows the displacement.
@@ -70,6 +72,7 @@ private:
   const SparseMatrix w_product_; ///< of the columns of the dual basis
   LawStarts starts_;
   Vector last_state_;
+  NonlinearOptions steps_{.economical = true};
 };
 
 } // namespace rbvi

@@ -3,6 +3,7 @@
 #include "rbvi/contact/named_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
@@ -38,12 +39,41 @@ void check_materials(const ReducedModel &model, const Scene &scene) {
       throw bad_input("the materials of the model are not those of its scene in this build");
 }
 
+/// The options with the method of the model where they name none. Throws bad_input for one that
+/// its queries do not have.
+QueryOptions with_method(QueryOptions options, const ReducedModel &model, const Scene &scene) {
+  const auto kept = model.made.settings.find("online_method");
+  if (!options.method)
+    options.method = online_method(kept == model.made.settings.end() ? "exact" : kept->second);
+  const bool on_functions = model.contact.law && model.contact.law->basis.normal.size() > 0;
+  if (options.method == OnlineMethod::uzawa && !on_functions)
+    throw bad_input("Uzawa's method is for models by -multiplier_reduction collocated: ask this "
+                    "one by the method exact");
+  if (options.method == OnlineMethod::kacanov && !(model.has_multipliers() && follows_state(scene)))
+    throw bad_input("Kacanov's iteration is for multipliers of contact that follows the "
+                    "displacement: ask this model by the method exact");
+  return options;
+}
+
 } // namespace
+
+const std::vector<std::string> &online_method_names() {
+  static const std::vector<std::string> names{"exact", "uzawa", "kacanov"};
+  return names;
+}
+
+OnlineMethod online_method(const std::string &name) {
+  const std::vector<std::string> &names = online_method_names();
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end())
+    throw bad_input("the method of queries is '" + name + "': use one of " + joined(names));
+  return static_cast<OnlineMethod>(found - names.begin());
+}
 
 OnlineSolver::OnlineSolver(const ReducedModel &model, const QueryOptions &options)
     : OnlineSolver(model, model.scene, options) {}
 
-OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOptions &options)
+OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOptions &given)
     : model_(model), scene_(with_imposed_loads(std::move(scene))),
       imposed_energy_(rbvi::imposed_energy(scene_)), contact_(contact_of(model, scene_)),
       dual_basis_(model.contact.dual_basis.sparseView()) {
@@ -57,6 +87,7 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOp
       has_multipliers(scene_) != model.has_multipliers() ||
       (model.evaluates_contact() == separable_contact(scene_) && model.has_multipliers()))
     throw bad_input("the contact of the model does not fit its scene in this build");
+  const QueryOptions options = with_method(given, model, scene_);
   if (!model.has_multipliers()) {
     auto nitsche = std::make_unique<ReducedNitsche>(model, layer_of(contact_));
     nitsche_ = nitsche.get();

@@ -85,6 +85,10 @@ const std::vector<OnlineOption> &online_options() {
       {"extrapolate", "",
        "allow mu outside the box of the model, within the range of validity (an error otherwise)",
        nullptr, &Arguments::extrapolate},
+      {"method", "NAME",
+       "how a query is solved: " + joined(online_method_names()) +
+           " (-online_method of rbvi); without it as the model was made for",
+       &Arguments::method},
       {"warm", "",
        "with --queries: each starts from the answer before, for queries along a path; without it "
        "an "
@@ -210,7 +214,9 @@ void run(const OnlineArguments &arguments, const Registry &registry, std::ostrea
     print_model(out, model);
     return;
   }
-  OnlineSolver solver(model, QueryOptions{.warm = arguments.warm});
+  QueryOptions how{.warm = arguments.warm};
+  if (!arguments.method.empty()) how.method = online_method(arguments.method);
+  OnlineSolver solver(model, how);
   check_files(arguments, solver.scene());
   if (!arguments.mu.empty())
     answer_one(arguments, solver, out);

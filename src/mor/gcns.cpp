@@ -26,6 +26,9 @@ void check(const std::vector<GcnsSample> &samples, const Matrix &normal, const M
       throw failure("GCNS: the sizes of a sample do not fit the bases");
   if (!(options.tolerance >= 0) || options.max_nodes < 0)
     throw bad_input("GCNS: the tolerance and the largest number of nodes must not be negative");
+  if (options.nodes == CollocationNodes::all && (options.tolerance > 0 || options.max_nodes > 0))
+    throw bad_input("GCNS: -gcns_nodes all takes every node: leave out -gcns_tolerance and "
+                    "-gcns_max_nodes");
 }
 
 /// What one reduced solution leaves at all nodes.
@@ -53,6 +56,9 @@ public:
   }
 
   Gcns run(const GcnsOptions &options) {
+    if (options.nodes == CollocationNodes::all)
+      for (int node = 0; node < static_cast<int>(taken_.size()); ++node)
+        take({node});
     while (step(options)) {
     }
     const auto best = std::min_element(result_.error.begin(), result_.error.end());
@@ -73,6 +79,8 @@ private:
     const auto total = result_.nodes.size() + next.size();
     if (result_.nodes.size() == taken_.size())
       result_.reason = "all nodes are taken";
+    else if (options.nodes == CollocationNodes::before_rise && rises())
+      result_.reason = "the error rises";
     else if (options.tolerance > 0 && result_.error.back() <= options.tolerance)
       result_.reason = "the error is within the tolerance";
     else if (next.empty())
@@ -82,6 +90,11 @@ private:
     else
       take(next);
     return result_.reason.empty();
+  }
+
+  bool rises() const {
+    const std::vector<double> &error = result_.error;
+    return error.size() > 1 && error.back() > error[error.size() - 2];
   }
 
   void take(const std::vector<int> &nodes) {
@@ -174,6 +187,11 @@ private:
 };
 
 } // namespace
+
+const std::vector<std::string> &collocation_nodes_names() {
+  static const std::vector<std::string> names{"best", "before_rise", "all"};
+  return names;
+}
 
 Gcns select_collocation_nodes(const std::vector<GcnsSample> &samples, const Matrix &normal_basis,
                               const Matrix &tangential_basis, const SparseMatrix &product,

@@ -62,10 +62,7 @@ Vector slip_left(const Problem &problem, const Operators &op, const Vector &befo
 /// Where a few dozen accelerated Uzawa steps see contact: far cheaper than the columns of all
 /// nodes.
 Vector rough_start(KSP ksp, Problem &problem, const Operators &op) {
-  HfOptions rough;
-  rough.uzawa_accelerated = true;
-  rough.uzawa_tolerance = 1e-3;
-  rough.uzawa_max_iterations = 100;
+  const UzawaOptions rough{.tolerance = 1e-3, .max_iterations = 100, .accelerated = true};
   const DualLayout &layout = problem.dual_layout();
   const DistributedContact contact = distribute(layout, op, op.laws);
   const Handle<Mat> w = distribute(layout, problem.w_product());
@@ -254,7 +251,7 @@ MethodResult HighFidelity::run_over_ranks(const Operators &op, const Vector &sli
   MethodResult result =
       options_.method == HfMethod::vi
           ? solve_vi(problem_, contact, op)
-          : solve_uzawa(ksp_.get(), layout, contact, op.f, w_product_.get(), options_);
+          : solve_uzawa(ksp_.get(), layout, contact, op.f, w_product_.get(), options_.uzawa);
   if (!result.converged) return result;
   result.active = in_contact(op.laws, result.lambda);
   measure_over_ranks(op, contact, slip, result);

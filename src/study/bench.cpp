@@ -79,7 +79,7 @@ std::string solver_name(const Problem &problem, const HfOptions &options, bool c
   case HfMethod::active_set:
     return cold ? "active_set cold" : "active_set warm-started";
   case HfMethod::uzawa:
-    return options.uzawa_accelerated ? "uzawa accelerated" : "uzawa fixed step";
+    return options.uzawa.accelerated ? "uzawa accelerated" : "uzawa fixed step";
   case HfMethod::vi:
     return "vi on the lumped scene";
   }

@@ -4,6 +4,7 @@
 #include "rbvi/study/separation_errors.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 namespace rbvi {
@@ -55,8 +56,11 @@ StateSeparation separation_over_states(const Contact &contact, const ParameterSp
   const Eim found = eim(PETSC_COMM_SELF, values, keys, {tolerance, 0});
   const Matrix functions = values(Eigen::all, found.snapshots) * found.combination;
   std::vector<Index> rows;
-  for (const EntryKey &entry : found.entries)
+  std::set<PetscInt> multipliers;
+  for (const EntryKey &entry : found.entries) {
     rows.push_back(std::ranges::lower_bound(keys, entry) - keys.begin());
+    multipliers.insert(entry.row);
+  }
   Matrix left = entries_at(contact, space, validation, keys, op);
   const double scale = values.cwiseAbs().maxCoeff();
   SeparationErrors errors{"b_of_states", found.error, {left.cwiseAbs().maxCoeff() / scale}};
@@ -67,8 +71,8 @@ StateSeparation separation_over_states(const Contact &contact, const ParameterSp
     errors.validation.push_back(left.cwiseAbs().maxCoeff() / scale);
   }
   const Vector singular = singular_values(values);
-  return {std::move(errors),
-          static_cast<int>((singular.array() > tolerance * singular[0]).count())};
+  return {std::move(errors), static_cast<int>((singular.array() > tolerance * singular[0]).count()),
+          static_cast<int>(multipliers.size())};
 }
 
 } // namespace rbvi

@@ -336,7 +336,7 @@ Settings sample_settings(const Problem &problem, const HfOptions &options) {
   }
   settings["hf_method"] = hf_method_names()[static_cast<std::size_t>(options.method)];
   if (options.method == HfMethod::uzawa)
-    settings["uzawa_tolerance"] = number(options.uzawa_tolerance);
+    settings["uzawa_tolerance"] = number(options.uzawa.tolerance);
   if (follows_state(scene)) settings["nonlinear_tolerance"] = number(options.nonlinear.tolerance);
   return settings;
 }

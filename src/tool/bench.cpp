@@ -118,9 +118,9 @@ std::vector<BenchRow> bench_baselines(Problem &problem, const ToolOptions &optio
   rows.push_back(bench_solver(problem, hf, truths, truths.size(), From::cold));
   if (follows || !problem.free_bodies().empty()) return rows; // Uzawa's steps take no end there
   hf.method = HfMethod::uzawa;
-  hf.uzawa_accelerated = true;
+  hf.uzawa.accelerated = true;
   rows.push_back(bench_solver(problem, hf, truths, few, From::cold));
-  hf.uzawa_accelerated = false;
+  hf.uzawa.accelerated = false;
   rows.push_back(bench_solver(problem, hf, truths, few_slow, From::cold));
   if (vi_fits(options.scene)) {
     SceneOptions lumped = options.scene.options;

@@ -181,6 +181,12 @@ std::vector<Option> of_multipliers() {
       kept(collocated,
            number("tangential_tolerance", relative_error, RBVI_AT(reduce.multipliers.tangential),
                   "collocated: relative error that the modes of lambda_tau may leave")),
+      choice("gcns_nodes",
+             choices(collocation_nodes_names(),
+                     {"those of the least e_GCNS that the greedy selection meets to its end",
+                      "those before the first rise of e_GCNS, where Algorithm 3 stops",
+                      "every one (3.43)"}),
+             RBVI_AT(reduce.gcns.nodes), "collocated: nodes that hold the bound of friction"),
       number("gcns_tolerance", positive, RBVI_AT(reduce.gcns.tolerance),
              "collocated: no more nodes are chosen at this e_GCNS; 0: all are tried, and the "
              "best number is kept"),

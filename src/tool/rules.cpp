@@ -122,6 +122,9 @@ const OfMethod of_methods[] = {
     {"nonlinear_", [](const ToolOptions &o) { return follows_state(o.scene); },
      "contact that follows the displacement: set -kinematics large"},
     {"gcns_", collocates, "-multiplier_reduction collocated"},
+    {"online_method", has_online_method,
+     "-multiplier_reduction collocated (uzawa), or for contact with multipliers that follows the "
+     "displacement (kacanov)"},
     {"tangential_", collocates, "-multiplier_reduction collocated"},
     {"multiplier_exact", collocates, "-multiplier_reduction collocated"},
     {"friction_bound", [](const ToolOptions &o) { return has_law(o.scene, FrictionLaw::tresca); },
@@ -145,6 +148,18 @@ void check_effect(const ToolOptions &options) {
 }
 
 } // namespace
+
+bool has_online_method(const ToolOptions &options) {
+  switch (options.online_method) {
+  case OnlineMethod::exact:
+    return true;
+  case OnlineMethod::uzawa:
+    return has_multipliers(options.scene) && collocates(options);
+  case OnlineMethod::kacanov:
+    return has_multipliers(options.scene) && follows_state(options.scene);
+  }
+  return false;
+}
 
 void check_rules(const ToolOptions &options) {
   const ReduceOptions &reduce = options.reduce;

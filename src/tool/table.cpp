@@ -66,6 +66,16 @@ std::vector<Option> of_runs() {
                       "file to which solve writes its outputs as a table")),
       flag("verify_stability", RBVI_AT(stability),
            "verify: measure inf-sup constants and their bounds besides errors"),
+      kept([](const ToolOptions &o) { return o.online_method != OnlineMethod::exact; },
+           choice("online_method",
+                  choices(online_method_names(),
+                          {"to round-off, by the fastest iteration that there is",
+                           "-multiplier_reduction collocated: Uzawa's method on the reduced pair, "
+                           "(3.40) or (3.55) until (3.19)",
+                           "contact that follows the displacement: each step solves the problem "
+                           "linearised at the state before (A.7), not accelerated"}),
+                  RBVI_AT(online_method),
+                  "how the model answers, in verify and bench, and later in rbvi-online")),
       of_command(
           rising("bench_growth", refinements, RBVI_AT(growth),
                  "bench: measure what offline costs, stage by stage, on the meshes with these "
@@ -108,13 +118,13 @@ std::vector<Option> solver_rows() {
       number("contact_gather", {0, 1000000000}, RBVI_AT(contact_gather),
              "each rank evaluates a whole interface with up to this many multipliers, and its own "
              "part of a larger one (of two bodies always the whole)"),
-      number("uzawa_tolerance", {1e-15, 0.1}, RBVI_AT(hf.uzawa_tolerance),
+      number("uzawa_tolerance", {1e-15, 0.1}, RBVI_AT(hf.uzawa.tolerance),
              "uzawa stops at this relative change of the multipliers"),
-      number("uzawa_max_iterations", {1, 100000000}, RBVI_AT(hf.uzawa_max_iterations),
+      number("uzawa_max_iterations", {1, 100000000}, RBVI_AT(hf.uzawa.max_iterations),
              "largest number of iterations of uzawa"),
-      flag("uzawa_accelerated", RBVI_AT(hf.uzawa_accelerated),
+      flag("uzawa_accelerated", RBVI_AT(hf.uzawa.accelerated),
            "accelerate uzawa by Nesterov's extrapolation with restart"),
-      number("uzawa_step", positive, RBVI_AT(hf.uzawa_step),
+      number("uzawa_step", positive, RBVI_AT(hf.uzawa.step),
              "step rho of uzawa; 0: 1 / largest eigenvalue of B A^-1 B^T")};
 }
 

@@ -68,6 +68,9 @@ std::vector<std::pair<std::string, Scene>> variants(const SceneEntry &entry);
 /// Parameters of the scene, and those that variants add, with "" and that choice.
 std::vector<std::pair<Parameter, std::string>> parameters_of(const SceneEntry &entry);
 
+/// Whether models of these options can be asked by their online_method.
+bool has_online_method(const ToolOptions &options);
+
 /// Throws bad_input for options that do not go together, or not with the scene.
 void check_rules(const ToolOptions &options);
 

@@ -148,11 +148,12 @@ void write_separation(const fs::path &path, Problem &problem, const ReducedModel
   constexpr double of_states = 1e-6;
   std::vector<SeparationErrors> separated = separation_errors(problem, model, validation);
   const bool follows = follows_state(problem.contact());
-  int svd_rank = 0;
+  int svd_rank = 0, multipliers = 0;
   if (follows) {
     StateSeparation found = separation_over_states(problem.contact(), problem.scene().parameters,
                                                    training, states, of_states);
     svd_rank = found.svd_rank;
+    multipliers = found.multipliers;
     separated.push_back(std::move(found.errors));
   }
   collectively(problem.comm(), [&] {
@@ -175,11 +176,13 @@ void write_separation(const fs::path &path, Problem &problem, const ReducedModel
                 line.empty() ? "none" : line.c_str());
     if (follows)
       std::printf("B over (mu, step), were it interpolated: %td terms leave %s of %zu training and "
-                  "%s of %zu validation states; its rank by SVD at %s: %d\n",
+                  "%s of %zu validation states; its rank by SVD at %s: %d; entries of %d "
+                  "multipliers of %td\n",
                   std::ssize(separated.back().training) - 1,
                   short_number(separated.back().training.back()).c_str(), training.size(),
                   short_number(separated.back().validation.back()).c_str(), states.size(),
-                  short_number(of_states).c_str(), svd_rank);
+                  short_number(of_states).c_str(), svd_rank, multipliers,
+                  problem.contact().dual_size());
   });
 }
 

@@ -22,6 +22,7 @@ FEW = {
     "rigid_disk/large_nitsche": ["-train", "random:8:1", "-arc_edges", "40"],
     "rigid_disk/nitsche": ["-train", "grid:5", "-arc_edges", "40"],
     "rigid_disk/published": ["-train", "grid:21"],
+    "rigid_disk/published_large": ["-train", "random:8:1", "-arc_edges", "40"],
     "roller": ["-train", "grid:3,3"],
     "two_disks": ["-train", "grid:9"],
     "two_disks/cone": ["-train", "grid:9"],

@@ -184,6 +184,41 @@ TEST(Gcns, StopsWhereItIsTold) {
   EXPECT_TRUE(loose.nodes.empty());
 }
 
+/// At the first rise of the error, with the nodes of the step before.
+TEST(Gcns, TheStopOfAlgorithm3IsTheFirstRise) {
+  int rises = 0;
+  for (const double truncation : {1e-1, 3e-2, 1e-2, 1e-3, 1e-11}) {
+    const Reduced r(Punches(41, 9, 0.3, 0.1), 0.3, truncation);
+    const Gcns all = r.select(), stopped = r.select({.nodes = CollocationNodes::before_rise});
+    SCOPED_TRACE(stopped.reason);
+    std::size_t last = 0; // step before the first rise
+    while (last + 1 < all.error.size() && all.error[last + 1] <= all.error[last])
+      ++last;
+    ASSERT_LE(stopped.error.size(), all.error.size());
+    EXPECT_TRUE(std::equal(stopped.error.begin(), stopped.error.end(), all.error.begin()));
+    if (last + 1 == all.error.size()) {
+      EXPECT_EQ(stopped.nodes, all.nodes);
+      continue;
+    }
+    ++rises;
+    EXPECT_EQ(stopped.error.size(), last + 2) << "the step that rises is the last one";
+    EXPECT_NE(stopped.reason.find("the error rises"), std::string::npos);
+    expect_consistent(stopped, 9);
+    EXPECT_NEAR(r.measure(stopped.nodes).first, all.error[last], 1e-8);
+  }
+  EXPECT_GT(rises, 0);
+}
+
+TEST(Gcns, AllNodesHoldTheBoundEverywhere) {
+  const Reduced r(Punches(31, 6, 0.3, 0.1), 0.3, 1e-3);
+  const Gcns all = r.select({.nodes = CollocationNodes::all});
+  EXPECT_EQ(all.nodes.size(), 31u);
+  EXPECT_EQ(all.count, std::vector<int>{31});
+  EXPECT_LE(all.violation.front(), 1e-9);
+  EXPECT_NEAR(r.measure(all.nodes).first, all.error.front(), 1e-8);
+  EXPECT_THROW(r.select({.nodes = CollocationNodes::all, .max_nodes = 4}), Error);
+}
+
 TEST(Gcns, IsDeterministic) {
   const Reduced r(Punches(31, 6, 0.4, 0.1), 0.4, 1e-3);
   const Gcns one = r.select(), two = r.select();

@@ -37,8 +37,8 @@ TEST(DistributedContact, AnswersDoNotDependOnGathering) {
               roller = make_scene("roller"), discs = make_scene("two_disks");
   HfOptions uzawa;
   uzawa.method = HfMethod::uzawa;
-  uzawa.uzawa_accelerated = true;
-  uzawa.uzawa_tolerance = 1e-2; // as many steps on any number of ranks, not an answer
+  uzawa.uzawa.accelerated = true;
+  uzawa.uzawa.tolerance = 1e-2; // as many steps on any number of ranks, not an answer
   for (const HfOptions &options : {HfOptions{}, uzawa}) {
     expect_one_answer(membrane, {0.17, -0.03, 0.05}, options);
     expect_one_answer(disk, {1.1}, options);

@@ -27,8 +27,8 @@ Solved solve(const Scene &scene, const Mu &mu, const std::string &mesh = "", int
   Problem problem(PETSC_COMM_WORLD, scene, {mesh, refine}, 0);
   HfOptions options;
   options.method = method;
-  options.uzawa_accelerated = true;
-  options.uzawa_tolerance = 1e-9;
+  options.uzawa.accelerated = true;
+  options.uzawa.tolerance = 1e-9;
   Solved result{HighFidelity(problem, options).solve(mu), dual_points(problem.contact()), {}};
   result.weights = problem.assemble(mu).weights;
   return result;

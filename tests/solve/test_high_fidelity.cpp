@@ -139,8 +139,8 @@ TEST(Vi, SaysThatItNeedsNodalBounds) {
 double uzawa_error(bool accelerated, double tolerance, const HfSolution &truth) {
   HfOptions options;
   options.method = HfMethod::uzawa;
-  options.uzawa_tolerance = tolerance;
-  options.uzawa_accelerated = accelerated;
+  options.uzawa.tolerance = tolerance;
+  options.uzawa.accelerated = accelerated;
   const HfSolution s = solve(PETSC_COMM_WORLD, shifted, options);
   EXPECT_GE(s.lambda.minCoeff(), 0);
   EXPECT_LE(relative(*s.outputs.energy, *truth.outputs.energy), 10 * tolerance);
@@ -159,16 +159,16 @@ TEST(Uzawa, ConvergesToTheActiveSetSolution) {
 TEST(Uzawa, AccelerationSavesIterations) { // each rank by itself: hundreds of small solves
   HfOptions options;
   options.method = HfMethod::uzawa;
-  options.uzawa_tolerance = 1e-5;
+  options.uzawa.tolerance = 1e-5;
   const int fixed = solve(PETSC_COMM_SELF, shifted, options).iterations;
-  options.uzawa_accelerated = true;
+  options.uzawa.accelerated = true;
   EXPECT_LT(4 * solve(PETSC_COMM_SELF, shifted, options).iterations, fixed);
 }
 
 TEST(Uzawa, StoppingEarlyIsAnError) {
   HfOptions options;
   options.method = HfMethod::uzawa;
-  options.uzawa_max_iterations = 3;
+  options.uzawa.max_iterations = 3;
   try {
     solve(PETSC_COMM_SELF, centred, options);
     FAIL();

@@ -76,8 +76,8 @@ TEST(History, ABlockPushedToAndFroSlipsAsFarAsItsPathSays) {
 TEST(History, IsTakenInOverTheRanks) {
   HfOptions options;
   options.method = HfMethod::uzawa;
-  options.uzawa_accelerated = true;
-  options.uzawa_tolerance = 1e-11;
+  options.uzawa.accelerated = true;
+  options.uzawa.tolerance = 1e-11;
   expect_path("1", options, 1e-7);
 }
 

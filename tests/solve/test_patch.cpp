@@ -96,8 +96,8 @@ TEST(Patch, UzawaFindsTheSame) {
   Problem problem(PETSC_COMM_WORLD, make_scene("patch"), {});
   HfOptions options;
   options.method = HfMethod::uzawa;
-  options.uzawa_accelerated = true;
-  options.uzawa_tolerance = 1e-12;
+  options.uzawa.accelerated = true;
+  options.uzawa.tolerance = 1e-12;
   const HfSolution s = HighFidelity(problem, options).solve({0.05});
   const double pressure = Material().modulus() * 0.05;
   EXPECT_LE((s.lambda.array() - pressure).abs().maxCoeff(), 1e-9 * pressure);

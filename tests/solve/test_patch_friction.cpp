@@ -74,7 +74,7 @@ TEST(PatchFriction, UzawaFindsTheSame) {
     Problem problem(PETSC_COMM_SELF, block("1"), {});
     HfOptions options;
     options.method = HfMethod::uzawa;
-    options.uzawa_tolerance = 1e-11;
+    options.uzawa.tolerance = 1e-11;
     const HfSolution s = HighFidelity(problem, options).solve(mu);
     const Exact exact(mu, false);
     const Index count = problem.contact().nodes();

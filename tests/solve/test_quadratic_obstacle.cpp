@@ -84,8 +84,8 @@ TEST(QuadraticObstacle, AllMethodsAgree) {
   HfOptions vi, uzawa;
   vi.method = HfMethod::vi;
   uzawa.method = HfMethod::uzawa;
-  uzawa.uzawa_accelerated = true;
-  uzawa.uzawa_tolerance = 1e-9;
+  uzawa.uzawa.accelerated = true;
+  uzawa.uzawa.tolerance = 1e-9;
   const MPI_Comm world = PETSC_COMM_WORLD;
   for (const Exact &e : exact) {
     const HfSolution lumped = solve(world, e.mu, quadratic("yes"));

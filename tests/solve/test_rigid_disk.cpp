@@ -175,7 +175,7 @@ TEST(RigidDisk, UzawaAndActiveSetAgree) {
     const HfSolution truth = HighFidelity(problem, {}).solve(mu);
     HfOptions uzawa;
     uzawa.method = HfMethod::uzawa;
-    uzawa.uzawa_tolerance = 1e-8;
+    uzawa.uzawa.tolerance = 1e-8;
     const HfSolution other = HighFidelity(problem, uzawa).solve(mu);
     // The criterion bounds the last step, not the error, which is larger by the condition.
     EXPECT_LE((other.lambda - truth.lambda).norm(), 1e-4 * truth.lambda.norm()) << law;

@@ -237,8 +237,8 @@ TEST(TwoDisks, UzawaConvergesToTheActiveSetSolution) {
   const HfSolution truth = solve(PETSC_COMM_SELF, {0.7});
   HfOptions options;
   options.method = HfMethod::uzawa;
-  options.uzawa_accelerated = true;
-  options.uzawa_tolerance = 1e-9;
+  options.uzawa.accelerated = true;
+  options.uzawa.tolerance = 1e-9;
   const HfSolution s = solve(PETSC_COMM_SELF, {0.7}, {}, options);
   EXPECT_GE(s.lambda.minCoeff(), 0);
   EXPECT_LE((s.lambda - truth.lambda).norm(), 1e-5 * truth.lambda.norm());

@@ -104,8 +104,8 @@ TEST(LumpedSupport, HoldsTheGapAtEveryVertex) {
 TEST(LumpedSupport, UzawaComesToTheSameAnswer) {
   HfOptions options;
   options.method = HfMethod::uzawa;
-  options.uzawa_accelerated = true;
-  options.uzawa_tolerance = 1e-9;
+  options.uzawa.accelerated = true;
+  options.uzawa.tolerance = 1e-9;
   for (const char *law : {"none", "tresca", "coulomb"}) {
     const Mu mu = with_friction(law);
     Problem problem(PETSC_COMM_WORLD, disk(law), {});

@@ -92,8 +92,8 @@ TEST(FreeBodies, UzawaFindsTheSame) {
   Problem problem(PETSC_COMM_WORLD, block(1), {});
   HfOptions options;
   options.method = HfMethod::uzawa;
-  options.uzawa_accelerated = true;
-  options.uzawa_tolerance = 1e-11;
+  options.uzawa.accelerated = true;
+  options.uzawa.tolerance = 1e-11;
   const HfSolution s = HighFidelity(problem, options).solve({1, 0.1, 0.5});
   EXPECT_NEAR(s.outputs.normal_force.value(), 1, 1e-8);
   EXPECT_NEAR(s.outputs.peak_pressure.value(), 1, 1e-6);

@@ -125,13 +125,42 @@ TEST(LargeModel, InterpolationOverStatesTakesAtLeastTheRank) {
   int before = 0;
   for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
     SCOPED_TRACE(tolerance);
-    const auto [errors, rank] = over(points, tolerance);
+    const auto [errors, rank, multipliers] = over(points, tolerance);
+    EXPECT_GE(multipliers, 1);
+    EXPECT_LE(multipliers,
+              std::min<Index>(std::ssize(errors.training) - 1, r.problem.contact().dual_size()));
     EXPECT_GT(rank, before);
     EXPECT_LE(rank, std::ssize(errors.training) - 1);
     EXPECT_LE(errors.training.back(), tolerance);
     EXPECT_NEAR(errors.validation.back(), errors.training.back(), 1e-10);
     before = rank;
   }
+}
+
+/// Appendix A as printed: (A.7) to (A.9) without acceleration has the answers of Newton's method on
+/// the law at every node, in more steps, and those of Anderson's with friction and on a pair.
+TEST(LargeModel, KacanovsIterationAloneHasTheSameAnswers) {
+  const auto expect_same = [](const ReducedModel &model) {
+    OnlineSolver usual(model), plain(model, {.method = OnlineMethod::kacanov});
+    for (const Mu &mu : {Mu{0.13, 0.04}, Mu{0.19, -0.07}}) {
+      const ReducedAnswer a = usual.solve(mu), b = plain.solve(mu);
+      EXPECT_LE((a.lambda - b.lambda).norm(), 1e-7 * a.lambda.norm());
+      EXPECT_LE((a.u - b.u).norm(), 1e-7 * a.u.norm());
+      if (model.contact.law && !has_friction(model.scene)) {
+        EXPECT_GT(b.iterations, a.iterations);
+        EXPECT_GT(b.contraction, 0.1) << "linear";
+      }
+    }
+  };
+  Reduced r(large_disk("none", "indentation,offset", {{"arc_edges", "40"}}), "grid:4,4");
+  r.reduce(by(MultiplierReduction::condensed));
+  expect_same(r.model);
+  EXPECT_THROW(OnlineSolver(r.model, {.method = OnlineMethod::uzawa}), Error);
+  r.reduce(by(MultiplierReduction::cone));
+  expect_same(r.model);
+  Reduced rough(large_disk("coulomb", "indentation,offset", {{"arc_edges", "24"}}), "grid:4,4");
+  rough.reduce(by(MultiplierReduction::condensed));
+  expect_same(rough.model);
 }
 
 TEST(LargeModel, OnlineEnrichmentFollowsTheState) {

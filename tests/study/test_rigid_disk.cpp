@@ -239,6 +239,34 @@ TEST(MultiplierReductions, CollocatedWithoutFriction) {
   }
 }
 
+/// (3.55) to (3.19), and with the bound at every node (3.40): the fixed point is that of the exact
+/// solver, and what is left of it is of the order of the last step over the slowest contraction.
+TEST(MultiplierReductions, CollocatedByUzawasMethod) {
+  Reduced r(disk("radius"), "grid:21");
+  ReduceOptions options = published();
+  for (const CollocationNodes nodes : {CollocationNodes::best, CollocationNodes::all}) {
+    options.gcns.nodes = nodes;
+    r.reduce(options);
+    const bool all = nodes == CollocationNodes::all;
+    EXPECT_EQ(std::ssize(r.model.contact.law->basis.nodes) == r.model.contact.law->normal, all);
+    OnlineSolver exact(r.model), steps(r.model, {.method = OnlineMethod::uzawa});
+    for (const Mu &mu : {Mu{0.83}, Mu{1.21}}) {
+      const ReducedAnswer a = exact.solve(mu), b = steps.solve(mu);
+      EXPECT_LE(b.residual, 1e-6);
+      EXPECT_GT(b.iterations, 100) << "of fixed step, one gradient each";
+      EXPECT_LE((exact.multiplier(a) - steps.multiplier(b)).norm(),
+                1e-2 * exact.multiplier(a).norm());
+      EXPECT_NEAR(b.energy, a.energy, 1e-3 * a.energy);
+      EXPECT_GE(b.lambda.head(r.model.contact.law->normal).minCoeff(), -1e-14);
+    }
+    EXPECT_THROW(OnlineSolver(r.model, {.method = OnlineMethod::kacanov}), Error);
+  }
+  r.model.made.settings["online_method"] = "uzawa";
+  EXPECT_GT(OnlineSolver(r.model).solve({0.83}).iterations, 100) << "the model's method is taken";
+  r.model.made.settings["online_method"] = "newton";
+  EXPECT_THROW(OnlineSolver(r.model).solve({0.83}), Error);
+}
+
 /// Where b only scales all supremizers are one space, made offline or online: the same answers.
 TEST(MultiplierReductions, CollocatedWithOnlineEnrichment) {
   Reduced r(disk("radius"), "grid:21");

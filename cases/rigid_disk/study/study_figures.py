@@ -16,10 +16,10 @@ RADII = ("0.7", "1", "1.3")
 FRICTION = 0.2
 INITIAL_GAP = 0.001  # m, to the rigid disk of radius 1
 SHOWN = 0.25  # of the arc: a little more than is ever in contact
-SIZES = {"text": ("(30, 20, 20)", ORANGE), "published": ("-variant published", BLUE)}
+SIZES = {"text": ("(30, 20, 20)", ORANGE), "published": ("published tolerances", BLUE)}
 MODELS = {  # of the tangential stress
     "as published": ("(30, 20, 20), 20 pairs", ORANGE, "--"),
-    "published": ("-variant published", BLUE, "-"),
+    "published": ("published tolerances", BLUE, "-"),
     "default": ("condensed", GREEN, "-"),
 }
 

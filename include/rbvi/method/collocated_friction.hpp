@@ -12,6 +12,7 @@
 #pragma once
 
 #include "rbvi/method/friction.hpp"
+#include "rbvi/method/uzawa.hpp"
 
 namespace rbvi {
 
@@ -25,7 +26,7 @@ struct CollocatedProblem {
 
 struct CollocatedResult {
   Vector x, w;         ///< R + S each
-  int iterations = 0;  ///< frozen bounds, each a small QP
+  int iterations = 0;  ///< frozen bounds, each a small QP; steps of Uzawa's method
   double residual = 0; ///< largest relative violation of the three laws
   bool converged = false;
   std::string reason; ///< not converged: what to try
@@ -41,5 +42,12 @@ struct CollocatedResult {
 /// entries that are not finite, negative entries of N or an H that is not positive definite;
 /// bad_input for a negative bound.
 CollocatedResult solve_collocated(const CollocatedProblem &problem, const Vector &start = {});
+
+/// The same by Uzawa's method from x = 0, corrected (3.40), (3.52), (3.55): a step for a, then for
+/// b within the bounds at the new a, both projections those of the coefficients. `product`: Gram
+/// matrix of the functions in W, (R + S) x (R + S). `residual` is the relative change of the last
+/// step (3.19); steps along nearly dependent functions are small long before they end.
+CollocatedResult solve_collocated_by_uzawa(const CollocatedProblem &problem, const Matrix &product,
+                                           const UzawaOptions &options);
 
 } // namespace rbvi

@@ -5,6 +5,9 @@
 #include "rbvi/method/answer.hpp"
 #include "rbvi/method/node_laws.hpp"
 
+#include <optional>
+#include <string>
+
 namespace rbvi {
 
 /// What holds k free motions: B Z; Z^T F without springs, and the sums of the sizes of its terms.
@@ -37,12 +40,26 @@ struct Relaxed {
 /// What is left of the conditions of a query that has an answer: ReducedAnswer::residual.
 constexpr double largest_left = 1e-8;
 
+/// By which iteration.
+enum class OnlineMethod {
+  exact,  ///< the fastest one that there is, to round-off
+  uzawa,  ///< the law on fewer functions by Uzawa's method, (3.40) or (3.55) to (3.19)
+  kacanov ///< contact that follows the displacement by (A.7) alone, not accelerated
+};
+
+/// "exact", "uzawa", "kacanov".
+const std::vector<std::string> &online_method_names();
+/// Throws bad_input for another name.
+OnlineMethod online_method(const std::string &name);
+
 /// How queries are answered.
 struct QueryOptions {
   /// Start from the last answer: queries that follow each other closely cost less, and where there
   /// are several answers the order decides. Else a start is a function of mu and the model alone.
   bool warm = false;
   bool looks_for_others = false; ///< ReducedAnswer::to_other, from further starts
+  /// Not given: that of the model's setting "online_method" (OnlineSolver), else exact.
+  std::optional<OnlineMethod> method{};
 };
 
 /// One way to answer; what a query changes is its own.

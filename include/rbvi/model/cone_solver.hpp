@@ -31,7 +31,7 @@ private:
   void solve_from_start(ReducedAnswer &answer);
   /// The pair at mu; contact, where it follows the displacement, at a state.
   void solve_pair(const Vector &state, ReducedAnswer &answer);
-  /// Kacanov's iteration with the pair, accelerated.
+  /// Kacanov's iteration with the pair, accelerated but for OnlineMethod::kacanov.
   void solve_following(ReducedAnswer &answer);
   void evaluate_contact(const Vector &state, ReducedAnswer &answer);
   void set_b(const Vector &theta_b);

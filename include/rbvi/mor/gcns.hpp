@@ -17,7 +17,18 @@ struct GcnsSample {
   Vector tangential;                 ///< lambda_tau, high-fidelity, at all nodes
 };
 
+/// Which nodes hold the bound.
+enum class CollocationNodes {
+  best,        ///< those of the least error, beyond all its rises
+  before_rise, ///< those of the step before the first rise of the error: the stop of Algorithm 3
+  all          ///< every one (3.43)
+};
+
+/// "best", "before_rise", "all".
+const std::vector<std::string> &collocation_nodes_names();
+
 struct GcnsOptions {
+  CollocationNodes nodes = CollocationNodes::best;
   double tolerance = 0; ///< stop when e_GCNS is at or below; 0: no such stop
   int max_nodes = 0;    ///< stop where more would be needed; 0: no bound
 };
@@ -35,10 +46,11 @@ struct Gcns {
 /// matrix of the tangential multipliers (nodes x nodes). Starts without nodes; a step adds all
 /// nodes where the violation at mu_q is largest (ties within 1e-10 relative: both of a mirrored
 /// pair), and ends when no bound is violated any more. Goes on to all nodes where no tolerance
-/// stops it, and then returns the nodes of the least error. A sample without tangential multipliers
-/// counts with its absolute error, relative to the largest of the others. A reduced problem that is
-/// not solved ends the selection (`reason` says so); throws failure if it is one of the first step,
-/// for sizes that do not fit, or without samples or tangential multipliers.
+/// and no rise of the error stops it, and then returns the nodes of the least error. A sample
+/// without tangential multipliers counts with its absolute error, relative to the largest of the
+/// others. A reduced problem that is not solved ends the selection (`reason` says so); throws
+/// failure if it is one of the first step, for sizes that do not fit, or without samples or
+/// tangential multipliers.
 Gcns select_collocation_nodes(const std::vector<GcnsSample> &samples, const Matrix &normal_basis,
                               const Matrix &tangential_basis, const SparseMatrix &product,
                               const GcnsOptions &options);

@@ -22,6 +22,7 @@
 #include "rbvi/fem/problem.hpp"
 #include "rbvi/method/answer.hpp"
 #include "rbvi/method/nonlinear.hpp"
+#include "rbvi/method/uzawa.hpp"
 #include "rbvi/par/groups.hpp"
 #include "rbvi/solve/nitsche.hpp"
 
@@ -44,12 +45,9 @@ enum class HfContact {
 struct HfOptions {
   HfMethod method = HfMethod::active_set;
   HfContact contact = HfContact::automatic;
-  int samples = 1;               ///< that are to be solved: what can be kept for them is shared
-  double uzawa_tolerance = 1e-6; ///< relative change of lambda in W (3.19)
-  int uzawa_max_iterations = 20000;
-  bool uzawa_accelerated = false; ///< Nesterov's extrapolation, restarted when it overshoots
-  double uzawa_step = 0;          ///< rho; 0: 1 / largest eigenvalue of B A^-1 B^T
-  NonlinearOptions nonlinear;     ///< where contact follows the displacement
+  int samples = 1; ///< that are to be solved: what can be kept for them is shared
+  UzawaOptions uzawa;
+  NonlinearOptions nonlinear; ///< where contact follows the displacement
   NitscheOptions nitsche;
   /// HfSolution::to_other, from further starts: by active sets on the multipliers, at small
   /// deformations.

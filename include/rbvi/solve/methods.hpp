@@ -47,7 +47,7 @@ FollowingResult solve_following(FactoredBody &body, const Problem &problem, Oper
 
 /// `f`: the load; `w_product`: over the ranks. Collective.
 MethodResult solve_uzawa(KSP ksp, const DualLayout &layout, const DistributedContact &contact,
-                         Vec f, Mat w_product, const HfOptions &options);
+                         Vec f, Mat w_product, const UzawaOptions &options);
 
 /// Throws bad_input, saying what to set, unless every interface bounds single nodes (vertex
 /// quadrature) without friction.

@@ -29,6 +29,7 @@ struct StateSeparation {
   /// Singular values of the training states' B, as columns of entries, above the tolerance times
   /// the largest: as many terms would do, were every entry of B known at a query.
   int svd_rank;
+  int multipliers; ///< whose rows the interpolated entries are in: edges beside them are evaluated
 };
 
 /// What empirical interpolation of B over (mu, state) would leave, where contact follows the

@@ -4,6 +4,7 @@
 
 #include "rbvi/io/overwrite.hpp"
 #include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/model/answer.hpp"
 #include "rbvi/mor/reduce.hpp"
 
 #include <filesystem>
@@ -32,8 +33,9 @@ struct ToolOptions {
   std::map<std::string, std::string> set_files; ///< option -> the file that holds its set
   std::string mu, vtu, csv;
   bool plan = false;
-  bool run_tests = false;  ///< check: those of the case
-  bool stability = true;   ///< verify: inf-sup constants and bounds too
+  bool run_tests = false;                           ///< check: those of the case
+  bool stability = true;                            ///< verify: inf-sup constants and bounds too
+  OnlineMethod online_method = OnlineMethod::exact; ///< of the queries of the model
   std::vector<int> growth; ///< bench: refinements whose cost is measured; empty: time against error
 };
 
