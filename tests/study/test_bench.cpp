@@ -55,7 +55,7 @@ TEST(Bench, ASolverWithoutAnAnswerSaysWhyAndHasNoTimes) {
   const std::vector<Sample> truths = solved(problem, {{0.2, 0, 0}});
   HfOptions options;
   options.method = HfMethod::uzawa;
-  options.uzawa_max_iterations = 1;
+  options.uzawa.max_iterations = 1;
   const BenchRow row = bench_solver(problem, options, truths, 1, From::cold);
   EXPECT_EQ(row.queries, 0);
   EXPECT_LT(row.u_max, 0);

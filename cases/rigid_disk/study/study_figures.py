@@ -183,11 +183,11 @@ def tangential(study, runs, directory):
 
 
 def configurations(directory, radius="0.7"):
-    """The body at rest, and deformed by the full and by the published reduced answer (figure 3.2)."""
+    """The body at rest, and deformed by the full and by the reduced answer (figure 3.2)."""
     figure, axes = plt.subplots(1, 3, figsize=(13, 3.6), constrained_layout=True, sharex=True,
                                 sharey=True)
     angle = np.linspace(0, np.pi, 200)
-    for axis, title, name in zip(axes, ("at rest", "high-fidelity", "reduced, -variant published"),
+    for axis, title, name in zip(axes, ("at rest", "high-fidelity", "reduced, published tolerances"),
                                  ("truth", "truth", "published")):
         axis.fill(np.cos(angle), np.sin(angle) - float(radius) - INITIAL_GAP - 1, color=GREY,
                   alpha=0.4, linewidth=0)
