@@ -40,13 +40,22 @@ ChosenPoints whole_curve(const NitscheModel &nitsche, const NitscheLayer &layer)
 
 } // namespace
 
-ReducedNitsche::ReducedNitsche(const ReducedModel &model, NitscheLayer layer)
+const std::vector<std::string> &online_method_names() {
+  static const std::vector<std::string> names{"auto", "newton"};
+  return names;
+}
+
+ReducedNitsche::ReducedNitsche(const ReducedModel &model, NitscheLayer layer, OnlineMethod method)
     : model_(model), layer_(std::move(layer)), body_(model, layer_.scene),
-      consistency_(model.contact.nitsche->consistency, layer_.cells) {
+      consistency_(model.contact.nitsche->consistency, layer_.cells),
+      from_rest_(method == OnlineMethod::newton) {
   system_ =
       std::make_unique<System>(model, layer_.cells, points_of(*model.contact.nitsche, layer_));
   if (model.contact.nitsche->rule == CurveRule::interpolated)
     interpolated_ = std::make_unique<Interpolated>(model, layer_);
+  else if (from_rest_)
+    throw bad_input("the method newton is for models of -nitsche_quadrature interpolated: leave it "
+                    "out");
 }
 
 ReducedNitsche::~ReducedNitsche() = default;
@@ -79,8 +88,8 @@ ReducedAnswer ReducedNitsche::solve(const FullMu &all_parameters, const Relaxed 
   ReducedAnswer answer;
   answer.mu = all_parameters;
   if (interpolated_) {
-    answer.iterations =
-        interpolated_->solve(all_parameters, predicted(nitsche.starts, all_parameters), system);
+    answer.iterations = interpolated_->solve(
+        all_parameters, from_rest_ ? Vector() : predicted(nitsche.starts, all_parameters), system);
   } else {
     system.set_points(layer_, all_parameters);
     system.predict(predicted(nitsche.starts, all_parameters),

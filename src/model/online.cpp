@@ -58,11 +58,13 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOp
       (model.evaluates_contact() == separable_contact(scene_) && model.has_multipliers()))
     throw bad_input("the contact of the model does not fit its scene in this build");
   if (!model.has_multipliers()) {
-    auto nitsche = std::make_unique<ReducedNitsche>(model, layer_of(contact_));
+    auto nitsche = std::make_unique<ReducedNitsche>(model, layer_of(contact_), options.method);
     nitsche_ = nitsche.get();
     method_ = std::move(nitsche);
     return;
   }
+  if (options.method == OnlineMethod::newton)
+    throw bad_input("the method newton is for Nitsche's method: leave it out");
   trace_.emplace(model, contact_);
   if (model.contact.law)
     method_ = law_solver(model, scene_, contact_, options);

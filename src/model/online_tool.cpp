@@ -90,6 +90,10 @@ const std::vector<OnlineOption> &online_options() {
        "an "
        "answer does not depend on the order of the queries",
        nullptr, &Arguments::warm},
+      {"method", "NAME",
+       "auto, or newton: of a model by -nitsche_quadrature interpolated Newton's method as "
+       "published, from u_0 = 0 and without a rescue",
+       &Arguments::method},
       {"help", "", "this list", nullptr, &Arguments::help},
       {"version", "", "of the program", nullptr, &Arguments::version}};
   return options;
@@ -193,6 +197,15 @@ void check_files(const OnlineArguments &arguments, const Scene &scene) {
   }
 }
 
+OnlineMethod method_of(const OnlineArguments &arguments) {
+  if (arguments.method.empty()) return OnlineMethod::automatic;
+  const std::vector<std::string> &names = online_method_names();
+  const auto found = std::ranges::find(names, arguments.method);
+  if (found == names.end())
+    throw bad_input("--method is '" + arguments.method + "': use one of " + joined(names));
+  return static_cast<OnlineMethod>(found - names.begin());
+}
+
 /// Does what the arguments say. Everything is computed before a file is written.
 void run(const OnlineArguments &arguments, const Registry &registry, std::ostream &out) {
   if (arguments.help) {
@@ -210,7 +223,7 @@ void run(const OnlineArguments &arguments, const Registry &registry, std::ostrea
     print_model(out, model);
     return;
   }
-  OnlineSolver solver(model, QueryOptions{.warm = arguments.warm});
+  OnlineSolver solver(model, {.method = method_of(arguments), .warm = arguments.warm});
   check_files(arguments, solver.scene());
   if (!arguments.mu.empty())
     answer_one(arguments, solver, out);

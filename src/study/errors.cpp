@@ -188,10 +188,10 @@ Truths make_truths(Problem &problem, const ReducedModel &model,
 }
 
 ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, const Truths &truths,
-                         const SparseMatrix &w_product) {
+                         const SparseMatrix &w_product, const QueryOptions &query) {
   using Clock = std::chrono::steady_clock;
   const Index count = std::ssize(truths.mu), k = model.primal_size();
-  OnlineSolver solver(model);
+  OnlineSolver solver(model, query);
   const bool friction = truths.tangential_norm.size() > 0;
   const Vector normal = normal_rows(solver.contact());
   ModelErrors errors;

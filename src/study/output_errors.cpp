@@ -67,8 +67,9 @@ Outputs outputs_with_field(const OnlineSolver &solver, const Mu &mu,
   return outputs;
 }
 
-std::vector<Outputs> reduced_outputs(const ReducedModel &model, const std::vector<Mu> &set) {
-  OnlineSolver solver(model);
+std::vector<Outputs> reduced_outputs(const ReducedModel &model, const std::vector<Mu> &set,
+                                     const QueryOptions &query) {
+  OnlineSolver solver(model, query);
   std::vector<Outputs> rows;
   for (const Mu &mu : set) {
     rows.emplace_back();

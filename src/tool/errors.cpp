@@ -35,12 +35,12 @@ void print_errors(const std::string &label, const ModelErrors &e) {
 
 /// The multiplier where it is worst (with friction its tangential part), and what it should be.
 void write_worst_pressure(const fs::path &path, const ReducedModel &model, const Truths &truths,
-                          const ModelErrors &errors) {
+                          const ModelErrors &errors, const QueryOptions &query) {
   const bool friction = errors.tangential.size() > 0;
   Index worst = 0;
   (friction ? errors.tangential : errors.lambda).maxCoeff(&worst);
   const Mu &mu = truths.mu[worst];
-  OnlineSolver solver(model);
+  OnlineSolver solver(model, query);
   const std::vector<Point> points = dual_points(solver.contact());
   const Matrix reduced = by_node(solver.contact(), solver.multiplier(solver.solve(mu, true))),
                truth = by_node(solver.contact(), truths.lambda.col(worst));
@@ -142,12 +142,13 @@ std::string name_of(const ReducedModel &model) {
 }
 
 /// Of the model, and of its modes alone where it has more.
-Rows rows_of(const ReducedModel &model, const Truths &truths, const SparseMatrix &w) {
-  Rows rows{{name_of(model), model_errors(model, {}, truths, w)}};
+Rows rows_of(const ReducedModel &model, const Truths &truths, const SparseMatrix &w,
+             const QueryOptions &query) {
+  Rows rows{{name_of(model), model_errors(model, {}, truths, w, query)}};
   if (model.body.supremizers > 0)
-    rows.emplace_back(
-        "decorrelated",
-        model_errors(leading(model, model.body.modes, model.contact.generators), {}, truths, w));
+    rows.emplace_back("decorrelated",
+                      model_errors(leading(model, model.body.modes, model.contact.generators), {},
+                                   truths, w, query));
   return rows;
 }
 
@@ -167,12 +168,14 @@ void print_rows(const std::string &where, const Rows &rows) {
 /// The reduced outputs at the validation mu into a table, and the errors of these and of those on
 /// the boundary of the box.
 std::vector<OutputError> check_outputs(const ReducedModel &model, const Truths &validation,
-                                       const Truths &boundary, const fs::path &out) {
-  std::vector<Outputs> reduced = reduced_outputs(model, validation.mu), truths = validation.outputs;
+                                       const Truths &boundary, const fs::path &out,
+                                       const QueryOptions &query) {
+  std::vector<Outputs> reduced = reduced_outputs(model, validation.mu, query),
+                       truths = validation.outputs;
   std::ostringstream table;
   write_csv(table, model.scene.parameters, validation.mu, reduced);
   write_atomically(out / "reduced.csv", table.str());
-  const std::vector<Outputs> further = reduced_outputs(model, boundary.mu);
+  const std::vector<Outputs> further = reduced_outputs(model, boundary.mu, query);
   reduced.insert(reduced.end(), further.begin(), further.end());
   truths.insert(truths.end(), boundary.outputs.begin(), boundary.outputs.end());
   std::vector<OutputError> errors = output_errors(reduced, truths);
@@ -187,17 +190,17 @@ std::vector<OutputError> check_outputs(const ReducedModel &model, const Truths &
 } // namespace
 
 void check_errors(ReducedModel &model, const SparseMatrix &w, const Truths &validation,
-                  const Truths &boundary, const fs::path &out) {
-  const Rows rows = rows_of(model, validation, w);
+                  const Truths &boundary, const fs::path &out, const QueryOptions &query) {
+  const Rows rows = rows_of(model, validation, w, query);
   print_rows("over " + std::to_string(validation.mu.size()) + " validation mu", rows);
   write_errors(out / "errors.csv", model.scene.parameters, validation, rows);
   write_summary(out / "summary.csv", rows, model);
   if (rows.front().second.failed == 0)
-    write_worst_pressure(out / "worst_pressure.csv", model, validation, rows.front().second);
+    write_worst_pressure(out / "worst_pressure.csv", model, validation, rows.front().second, query);
   Rows at_boundary;
   fs::remove(out / "errors_at_boundary.csv");
   if (!boundary.mu.empty()) {
-    at_boundary = rows_of(model, boundary, w);
+    at_boundary = rows_of(model, boundary, w, query);
     print_rows("at " + std::to_string(boundary.mu.size()) + " corners and centres of faces",
                at_boundary);
     write_errors(out / "errors_at_boundary.csv", model.scene.parameters, boundary, at_boundary);
@@ -210,7 +213,7 @@ void check_errors(ReducedModel &model, const SparseMatrix &w, const Truths &vali
   model.made.validation_enriched = model.body.supremizers > 0 ? summary_of(0) : ValidationErrors{};
   model.made.validation_decorrelated = summary_of(rows.size() - 1);
   (model.body.supremizers > 0 ? model.made.validation_enriched : model.made.validation_decorrelated)
-      .outputs = check_outputs(model, validation, boundary, out);
+      .outputs = check_outputs(model, validation, boundary, out, query);
   std::vector<Mu> all = validation.mu;
   all.insert(all.end(), boundary.mu.begin(), boundary.mu.end());
   model.made.validated_mu = as_columns(all, model.scene.parameters.size());

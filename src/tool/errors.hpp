@@ -11,6 +11,7 @@ namespace rbvi {
 /// `out`, and stores what an answer is told of them in the model. `w`: the product of W. The sets
 /// may share a scale (share_scale); `boundary` may be empty. Serial.
 void check_errors(ReducedModel &model, const SparseMatrix &w, const Truths &validation,
-                  const Truths &boundary, const std::filesystem::path &out);
+                  const Truths &boundary, const std::filesystem::path &out,
+                  const QueryOptions &query);
 
 } // namespace rbvi

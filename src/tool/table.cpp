@@ -49,7 +49,8 @@ std::vector<Option> of_runs() {
                      text("train", OptionKind::set, "set", RBVI_AT(train),
                           "parameters of the training set: grid:5,5,5 | random:COUNT:SEED | COUNT "
                           "(seed 1) | corners (and centres of faces of the box) | file.csv with a "
-                          "header of names; several with ' + ' between them")),
+                          "header of names; several with ' + ' between them; 'grid:61 in "
+                          "radius=0.7,1.15', and random likewise, in a part of the box")),
            "training"),
       otherwise("the scene's", text("valid", OptionKind::set, "set", RBVI_AT(valid),
                                     "parameters of the validation set, given as -train is; verify "
@@ -66,6 +67,12 @@ std::vector<Option> of_runs() {
                       "file to which solve writes its outputs as a table")),
       flag("verify_stability", RBVI_AT(stability),
            "verify: measure inf-sup constants and their bounds besides errors"),
+      choice("online_method",
+             choices(online_method_names(),
+                     {"that of the model, which its file then keeps the errors of",
+                      "-nitsche_quadrature interpolated: Newton's method (4.79) as published, from "
+                      "u_0 = 0 and without a rescue"}),
+             RBVI_AT(query.method), "verify: by which iteration queries are answered"),
       of_command(
           rising("bench_growth", refinements, RBVI_AT(growth),
                  "bench: measure what offline costs, stage by stage, on the meshes with these "

@@ -67,7 +67,7 @@ std::vector<int> generator_counts(const ReducedModel &model) {
 /// Errors of the pairs (N, R), decorrelated and, where that is known, as enriched_pair makes
 /// them. Collective: the pairs are shared among the ranks.
 void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &model,
-                     const Truths &truths, const SparseMatrix &w) {
+                     const Truths &truths, const SparseMatrix &w, const QueryOptions &query) {
   struct Pair {
     int enriched, n, r;
   };
@@ -86,7 +86,7 @@ void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &m
       const auto [kind, n, r] = pairs[k];
       const SubModel pair =
           kind == 1 ? enriched_pair(model, n, r) : SubModel{leading(model, n, r), {}};
-      const ModelErrors e = model_errors(pair.model, pair.embedding, truths, w);
+      const ModelErrors e = model_errors(pair.model, pair.embedding, truths, w, query);
       rows.row(k).head(13) << kind, n, r, e.u.mean(), e.u.maxCoeff(), e.u_floor.mean(),
           e.lambda.mean(), e.lambda.maxCoeff(), e.lambda_floor.mean(), e.seconds, e.failed,
           e.u_floor.maxCoeff(), e.lambda_floor.maxCoeff();
@@ -183,6 +183,23 @@ void write_separation(const fs::path &path, Problem &problem, const ReducedModel
   });
 }
 
+/// Makes the directory `out` of a run, without tables of another model.
+void clear_tables(const fs::path &run, const fs::path &out) {
+  sweep_up(run);
+  make_directory(out);
+  for (const char *of_another_model : {"infsup.csv", "infsup_training.csv", "stability.csv"})
+    fs::remove(out / of_another_model);
+}
+
+/// A model keeps the errors of its own iteration alone. Returns what is written.
+std::vector<fs::path> keep_errors(const ReducedModel &model, const ToolOptions &options) {
+  std::vector<fs::path> written{options.out / "verify"};
+  if (options.query.method != OnlineMethod::automatic) return written;
+  written.push_back(options.out / "model.h5");
+  write_model(model, written.back());
+  return written;
+}
+
 /// High-fidelity answers at the corners and faces of the box, but for those in `validation`; rank 0
 /// says where there is none. Collective.
 std::vector<Sample> boundary_samples(MPI_Comm world, const Groups &groups, Problem &problem,
@@ -210,6 +227,7 @@ void command_verify(const ToolOptions &given) {
   ReducedModel model = model_of_run(world, given);
   const ToolOptions options = adopt_model(given, model);
   check_eigen_options(options, EigenUse::constants);
+  collectively(world, [&] { (void)OnlineSolver(model, options.query); }); // refused before work
   const std::vector<Mu> validation = parse_set(options.scene.parameters, options.valid);
   check_set(options.scene, validation);
   const std::vector<Mu> training = from_columns(model.made.trained_mu);
@@ -229,20 +247,18 @@ void command_verify(const ToolOptions &given) {
   Truths boundary = make_truths(problem, model, further);
   share_scale(truths, boundary);
   const fs::path out = options.out / "verify";
+  std::vector<fs::path> written;
   collectively(world, [&] {
     if (rank_of(world) != 0) return;
-    sweep_up(options.out);
-    make_directory(out);
-    for (const char *of_another_model : {"infsup.csv", "infsup_training.csv", "stability.csv"})
-      fs::remove(out / of_another_model);
-    check_errors(model, problem.w_product(), truths, boundary, out);
+    clear_tables(options.out, out);
+    check_errors(model, problem.w_product(), truths, boundary, out, options.query);
     look_for_other_answers(model, problem.scene(), from_columns(model.made.validated_mu));
     print_several_answers(std::cout, model);
-    write_model(model, options.out / "model.h5");
+    written = keep_errors(model, options);
     write_sample_table(out / "samples.csv", options.scene.parameters, answers);
     write_pictures(model, truths.mu, truths.outputs, out);
   });
-  write_error_map(out / "error_map.csv", world, model, truths, problem.w_product());
+  write_error_map(out / "error_map.csv", world, model, truths, problem.w_product(), options.query);
   write_mesh_quality(out / "mesh_quality.csv", world, problem, training, truths.mu);
   const std::vector<ContactPoint> points =
       follows_state(problem.scene())
@@ -260,7 +276,7 @@ void command_verify(const ToolOptions &given) {
   if (rank == 0) {
     for (const auto *samples : {&answers, &further})
       tell_of_samples(problem.scene(), problem.contact(), *samples, std::cout);
-    print_written(std::cout, {out, options.out / "model.h5"});
+    print_written(std::cout, written);
   }
   report_failures(options, sweep.report, validation.size(), "validation",
                   "measured over the others");

@@ -67,6 +67,29 @@ TEST_F(Nitsche, FulfilsTheLawsAlongAnyNormal) {
   EXPECT_LT(value_of(lifted, "law_error_normal"), 0.2) << "of two arcs one is not touched";
 }
 
+/// Chapter 4 as it is: the published iteration answers where it converges, and loses nothing that
+/// the model has stored.
+TEST_F(Nitsche, ThePublishedVariantIsVerifiedByThePublishedIteration) {
+  const std::string offline =
+      output_of(rbvi(2, "offline -case " RBVI_CASES "/rigid_disk -variant nitsche_published "
+                        "-friction tresca -arc_edges 40 -valid 3 -out run"));
+  EXPECT_TRUE(contains(offline, "61 solved")) << offline;
+  const std::string model = slurp("run/model.h5");
+  const std::string verify = verified();
+  EXPECT_TRUE(contains(verify, "nitsche interpolated")) << verify;
+  EXPECT_FALSE(contains(verify, "run/model.h5")) << verify;
+  EXPECT_EQ(slurp("run/model.h5"), model);
+  const std::string usual = output_of(rbvi_online("run/model.h5 --mu 0.85")),
+                    newton = output_of(rbvi_online("run/model.h5 --mu 0.85 --method newton"));
+  EXPECT_NEAR(value_of(newton, "energy"), value_of(usual, "energy"),
+              1e-8 * value_of(usual, "energy"));
+  EXPECT_NE(value_of(newton, "iterations"), value_of(usual, "iterations"));
+  const Finished refused = shell(rbvi_online("run/model.h5 --mu 0.85 --method other"));
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_TRUE(contains(refused.err, "use one of auto")) << refused.err;
+  EXPECT_TRUE(contains(output_of(rbvi(1, "verify -out run -online_method auto")), "run/model.h5"));
+}
+
 TEST_F(Nitsche, BadInputIsSaidInOneLine) {
   const std::string offline = "offline -case disk.yaml -out run ";
   expect_all_refused({{offline + "-hf_method uzawa", "mixed formulation"},

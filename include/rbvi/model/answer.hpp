@@ -37,8 +37,18 @@ struct Relaxed {
 /// What is left of the conditions of a query that has an answer: ReducedAnswer::residual.
 constexpr double largest_left = 1e-8;
 
+/// By which iteration, where a published one is there beside that of the model.
+enum class OnlineMethod {
+  automatic, ///< that of the model
+  newton     ///< interpolated operators of Nitsche's method: (4.79) from u_0, without a rescue
+};
+
+/// "auto", "newton".
+const std::vector<std::string> &online_method_names();
+
 /// How queries are answered.
 struct QueryOptions {
+  OnlineMethod method = OnlineMethod::automatic;
   /// Start from the last answer: queries that follow each other closely cost less, and where there
   /// are several answers the order decides. Else a start is a function of mu and the model alone.
   bool warm = false;

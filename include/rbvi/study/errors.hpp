@@ -50,7 +50,7 @@ struct ModelErrors {
 /// Serial. `embedding`: coordinates of the sub-model's basis in the basis of the truths (n x k,
 /// orthonormal columns); empty: the leading columns.
 ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, const Truths &truths,
-                         const SparseMatrix &w_product);
+                         const SparseMatrix &w_product, const QueryOptions &query = {});
 
 /// A sub-model and its embedding.
 struct SubModel {

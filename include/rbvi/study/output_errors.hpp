@@ -12,7 +12,8 @@ Outputs outputs_with_field(const OnlineSolver &solver, const Mu &mu, const Reduc
 
 /// The outputs of the model at each mu, in or out of its box; nothing is set where it has no
 /// answer. Serial.
-std::vector<Outputs> reduced_outputs(const ReducedModel &model, const std::vector<Mu> &set);
+std::vector<Outputs> reduced_outputs(const ReducedModel &model, const std::vector<Mu> &set,
+                                     const QueryOptions &query = {});
 
 /// Errors of every column that `truth` and `reduced` have, but for seconds and iterations, over
 /// those mu where both are set. `reduced`: of the first of the mu of `truth`, or of all. The range

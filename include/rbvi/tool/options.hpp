@@ -4,6 +4,7 @@
 
 #include "rbvi/io/overwrite.hpp"
 #include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/model/answer.hpp"
 #include "rbvi/mor/reduce.hpp"
 
 #include <filesystem>
@@ -21,6 +22,7 @@ struct ToolOptions {
   std::string train, valid; ///< as parse_set reads them
   HfOptions hf;
   ReduceOptions reduce;
+  QueryOptions query; ///< verify
   int contact_gather = static_cast<int>(default_contact_gather);
   int ranks_per_solve = 0;         ///< 0: auto, as group_ranks chooses
   double max_failures = 0.1;       ///< share of a set that may fail
