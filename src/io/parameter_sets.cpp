@@ -24,7 +24,8 @@ using Generator = std::function<std::optional<Mu>()>;
 
 constexpr double largest_set = 1e7;
 constexpr const char *id_name = "id";
-const std::string plus = " + "; ///< between the sets of a sum
+const std::string plus = " + ";    ///< between the sets of a sum
+const std::string within = " in "; ///< before a part of the box
 
 int parse_count(const std::string &text, const std::string &what) {
   const double value = parse_number(text, what);
@@ -59,7 +60,7 @@ Generator grid(const ParameterSpace &space, const std::string &text) {
   if (total > largest_set)
     throw bad_input("grid:" + text + " has more than " +
                     std::to_string(static_cast<long>(largest_set)) + " points");
-  return [&space, counts, k = 0L, end = static_cast<long>(total)]() mutable -> std::optional<Mu> {
+  return [space, counts, k = 0L, end = static_cast<long>(total)]() mutable -> std::optional<Mu> {
     if (k == end) return std::nullopt;
     Mu mu(counts.size());
     long rest = k++;
@@ -86,7 +87,7 @@ Generator random_set(const ParameterSpace &space, const std::string &text) {
   const double seed = parse_number(entries[1], "random seed");
   if (seed < 0 || seed > 9e15 || seed != std::floor(seed))
     throw bad_input("random seed " + trimmed(entries[1]) + ": it must be a whole number >= 0");
-  return [&space, left = count,
+  return [space, left = count,
           state = static_cast<std::uint64_t>(seed)]() mutable -> std::optional<Mu> {
     if (left-- <= 0) return std::nullopt;
     Mu mu;
@@ -95,6 +96,25 @@ Generator random_set(const ParameterSpace &space, const std::string &text) {
           at_fraction(space.at(i), static_cast<double>(next_random(state) >> 11) * 0x1p-53));
     return mu;
   };
+}
+
+/// The space with the range "radius=0.7,1.15", a part of its own.
+ParameterSpace narrowed(ParameterSpace space, const std::string &range) {
+  const std::size_t equals = range.find('=');
+  const std::string name = trimmed(range.substr(0, equals));
+  const std::optional<std::size_t> i = find_free(space, name);
+  if (!i) throw unknown_parameter(space, name);
+  const std::vector<std::string> ends = split(range.substr(std::min(equals, range.size())), ',');
+  if (ends.size() != 2) throw bad_input("'in " + range + "': write in " + name + "=LOWER,UPPER");
+  Parameter &parameter = space.all[space.free[*i]];
+  const double lower = parse_number(ends[0].substr(1), "lower bound of " + name),
+               upper = parse_number(ends[1], "upper bound of " + name);
+  if (!(parameter.lower <= lower && lower <= upper && upper <= parameter.upper))
+    throw bad_input("'in " + range + "' is no part of the range of " + name + ", " +
+                    short_number(parameter.lower) + " to " + short_number(parameter.upper));
+  parameter.lower = lower;
+  parameter.upper = upper;
+  return space;
 }
 
 /// A CSV table on a stream.
@@ -197,7 +217,12 @@ std::shared_ptr<std::ifstream> opened(const ParameterSpace &space, const std::st
 
 ParameterReader::ParameterReader(const ParameterSpace &space, const std::string &text,
                                  bool allow_outside) {
-  if (text.starts_with("grid:")) {
+  const std::size_t part = is_set_file(text) ? std::string::npos : text.find(within);
+  if (part != std::string::npos) {
+    next_ = ParameterReader(narrowed(space, text.substr(part + within.size())),
+                            trimmed(text.substr(0, part)))
+                .next_;
+  } else if (text.starts_with("grid:")) {
     next_ = grid(space, text.substr(5));
   } else if (text.starts_with("random:")) {
     next_ = random_set(space, text.substr(7));

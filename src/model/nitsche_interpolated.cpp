@@ -14,7 +14,7 @@ namespace {
 
 constexpr double accuracy = 1e-10; ///< change of u, relative (4.26)
 constexpr double smallest_step = 1e-3;
-constexpr int most_printed_steps = 20, most_halved_steps = 60;
+constexpr int most_printed_steps = 20, most_halved_steps = 60, most_alone = 100;
 
 /// Cells that any of the four operators is sampled on.
 std::vector<CurveCell> touched(const NitscheModel &model, const std::vector<CurveCell> &all) {
@@ -60,7 +60,8 @@ Matrix ReducedNitsche::Interpolated::slope(const std::vector<NitscheFace> &faces
   const Vector bounds = nitsche_bounds(faces, pressures);
   std::array<std::vector<FaceBlock>, 2> blocks{nitsche_tangent(faces, pressures, {}), {}};
   if (bounds.size() > 0) blocks[1] = nitsche_tangent(faces, pressures, bounds);
-  for (std::size_t k = 0; k < blocks[1].size(); ++k)
+  const bool joint = printed && parts[0].matrix.size() == 0;
+  for (std::size_t k = 0; k < blocks[1].size() && !joint; ++k)
     blocks[1][k] -= blocks[0][k];
   Matrix result = system.quadratic.a_gamma;
   for (std::size_t k = 0; k < 2; ++k) {
@@ -94,10 +95,12 @@ int ReducedNitsche::Interpolated::solve(const FullMu &all_parameters, const Vect
                                         System &system) {
   const std::vector<NitscheFace> faces = nitsche_faces(layer, all_parameters, cells);
   int steps = 0;
+  const bool alone = near.size() == 0;
   for (const bool printed : {true, false}) {
-    system.u = near;
+    if (alone && !printed) break;
+    system.u = alone ? Vector(Vector::Zero(trace.cols())) : near;
     Terms here = terms(faces, system, system.u);
-    const int most_steps = printed ? most_printed_steps : most_halved_steps;
+    const int most_steps = alone ? most_alone : printed ? most_printed_steps : most_halved_steps;
     for (int step = 1; step <= most_steps; ++step) {
       ++steps;
       const Vector d = -lu_solve(slope(faces, system, system.u, printed), here.residual);
@@ -115,8 +118,9 @@ int ReducedNitsche::Interpolated::solve(const FullMu &all_parameters, const Vect
     }
   }
   throw failure("the interpolated problem did not converge: its residual is " +
-                short_number(system.relative) +
-                "; reduce again with -nitsche_quadrature empirical");
+                short_number(system.relative) + "; " +
+                (alone ? "use the method exact, or " : "") +
+                "reduce again with -nitsche_quadrature empirical");
 }
 
 } // namespace rbvi

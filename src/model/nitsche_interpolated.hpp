@@ -19,8 +19,8 @@ struct ReducedNitsche::Interpolated {
 
   Interpolated(const ReducedModel &of, const NitscheLayer &whole);
   /// From the coefficients `near`, by (4.79); where that does not converge (its matrix is not the
-  /// derivative of its vectors), by the derivative, with halved steps. Into system.u. Returns the
-  /// steps.
+  /// derivative of its vectors), by the derivative, with halved steps. Empty: from u_0 = 0 by
+  /// (4.79) alone. Into system.u. Returns the steps. Throws failure where it does not converge.
   int solve(const FullMu &all_parameters, const Vector &near, System &system);
 
 private:

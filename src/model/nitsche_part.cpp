@@ -42,11 +42,13 @@ const std::vector<std::string> &curve_rule_names() {
 std::string describe_curve(const ReducedModel &model) {
   const NitscheModel &nitsche = *model.contact.nitsche;
   const auto number = [](auto size) { return std::to_string(size); };
-  if (nitsche.rule == CurveRule::interpolated)
-    return "terms: B^n " + number(nitsche.contact_matrix.size()) + ", Theta^n " +
-           number(nitsche.contact_vector.size()) + ", B^tau " +
-           number(nitsche.friction_matrix.size()) + ", Theta^tau " +
-           number(nitsche.friction_vector.size());
+  if (nitsche.rule == CurveRule::interpolated) {
+    const std::string friction = "B^tau " + number(nitsche.friction_matrix.size());
+    const bool joint = nitsche.contact_matrix.size() == 0 && nitsche.friction_matrix.size() > 0;
+    return "terms: B^n " + (joint ? "+ " + friction : number(nitsche.contact_matrix.size())) +
+           ", Theta^n " + number(nitsche.contact_vector.size()) + (joint ? "" : ", " + friction) +
+           ", Theta^tau " + number(nitsche.friction_vector.size());
+  }
   const std::size_t all = 4 * static_cast<std::size_t>(curve_cells(model));
   const bool few = nitsche.rule == CurveRule::empirical;
   return number(few ? nitsche.points.size() : all) + " of " + number(all) + " Gauss points";

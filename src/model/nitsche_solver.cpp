@@ -40,9 +40,11 @@ ChosenPoints whole_curve(const NitscheModel &nitsche, const NitscheLayer &layer)
 
 } // namespace
 
-ReducedNitsche::ReducedNitsche(const ReducedModel &model, NitscheLayer layer)
+ReducedNitsche::ReducedNitsche(const ReducedModel &model, NitscheLayer layer,
+                               const QueryOptions &options)
     : model_(model), layer_(std::move(layer)), body_(model, layer_.scene),
-      consistency_(model.contact.nitsche->consistency, layer_.cells) {
+      consistency_(model.contact.nitsche->consistency, layer_.cells),
+      from_rest_(options.method == OnlineMethod::newton) {
   system_ =
       std::make_unique<System>(model, layer_.cells, points_of(*model.contact.nitsche, layer_));
   if (model.contact.nitsche->rule == CurveRule::interpolated)
@@ -79,8 +81,8 @@ ReducedAnswer ReducedNitsche::solve(const FullMu &all_parameters, const Relaxed 
   ReducedAnswer answer;
   answer.mu = all_parameters;
   if (interpolated_) {
-    answer.iterations =
-        interpolated_->solve(all_parameters, predicted(nitsche.starts, all_parameters), system);
+    answer.iterations = interpolated_->solve(
+        all_parameters, from_rest_ ? Vector() : predicted(nitsche.starts, all_parameters), system);
   } else {
     system.set_points(layer_, all_parameters);
     system.predict(predicted(nitsche.starts, all_parameters),

@@ -52,13 +52,18 @@ QueryOptions with_method(QueryOptions options, const ReducedModel &model, const 
   if (options.method == OnlineMethod::kacanov && !(model.has_multipliers() && follows_state(scene)))
     throw bad_input("Kacanov's iteration is for multipliers of contact that follows the "
                     "displacement: ask this model by the method exact");
+  if (options.method == OnlineMethod::newton &&
+      (model.has_multipliers() || model.contact.nitsche->rule != CurveRule::interpolated))
+    throw bad_input(
+        "Newton's method from rest is for models by -nitsche_quadrature interpolated: ask "
+        "this one by the method exact");
   return options;
 }
 
 } // namespace
 
 const std::vector<std::string> &online_method_names() {
-  static const std::vector<std::string> names{"exact", "uzawa", "kacanov"};
+  static const std::vector<std::string> names{"exact", "uzawa", "kacanov", "newton"};
   return names;
 }
 
@@ -89,7 +94,7 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOp
     throw bad_input("the contact of the model does not fit its scene in this build");
   const QueryOptions options = with_method(given, model, scene_);
   if (!model.has_multipliers()) {
-    auto nitsche = std::make_unique<ReducedNitsche>(model, layer_of(contact_));
+    auto nitsche = std::make_unique<ReducedNitsche>(model, layer_of(contact_), options);
     nitsche_ = nitsche.get();
     method_ = std::move(nitsche);
     return;

@@ -14,9 +14,9 @@ LayerTerms interpolate_consistency(const NitscheLayer &layer, const std::vector<
                                    const Matrix &trace);
 
 /// B^n, Theta^n and, with friction, B^tau, Theta^tau over all pairs of a training parameter and a
-/// Newton step (4.71)-(4.78), without friction from u = 0. Solves the high-fidelity problems again.
-/// Collective. Sets the terms of model.contact.nitsche, the errors and the number of pairs in the
-/// report.
+/// Newton step (4.71)-(4.78), without friction from u = 0 (CurveOptions::published_pairs). Solves
+/// the high-fidelity problems again. Collective. Sets the terms of model.contact.nitsche, the
+/// errors and the number of pairs in the report.
 void interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
                        const CurveOptions &options, ReducedModel &model, CurveReport &report);
 

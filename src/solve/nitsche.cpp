@@ -31,11 +31,12 @@ NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheStart *st
   Handle<Vec> unknowns = like(op.f);
   Vec u = unknowns.get();
   const bool nested = system.bounds_move() && !options_.single_loop;
-  if (start != nullptr) {
-    system.predict(*start, nitsche_bounds(system.faces, start->pressures), u);
-  } else if (options_.full_steps) {
+  if (options_.plain_steps) {
     RBVI_CALL(VecZeroEntries(u));
     system.set_bounds(u);
+    if (nested) system.bounds.setZero(); // those of the body before it is pushed
+  } else if (start != nullptr) {
+    system.predict(*start, nitsche_bounds(system.faces, start->pressures), u);
   } else {
     system.predict_from_rest(u);
   }
@@ -59,12 +60,14 @@ void NitscheSolver::run(bool nested, Vec u, NitscheSolution &result) {
   NitscheSystem &system = *system_;
   const Handle<Vec> before = like(u);
   const double accuracy = system.accuracy;
-  system.tolerance = nested ? std::max(1e-3, accuracy) : accuracy;
+  const bool loose = nested && !options_.plain_steps && !loop_end;
+  system.tolerance = loose ? std::max(1e-3, accuracy) : accuracy;
   double last_change = 1;
   for (;;) {
     RBVI_CALL(VecCopy(u, before.get()));
     result.iterations += system.newton(u, result.reason);
     ++result.outer_iterations;
+    if (loop_end) loop_end(system.on_layer(u), system.bounds);
     if (!nested) return;
     system.set_bounds(u);
     RBVI_CALL(VecAXPY(before.get(), -1, u));

@@ -216,7 +216,7 @@ void NitscheSystem::search(SNESLineSearch line) {
   const NitscheLine along = nitsche_line(faces, on_layer(u), -on_layer(y), bounds);
   const double linear = -dot(au.get(), y), quadratic = dot(ay.get(), y);
   const bool descends = linear + along.slope(0) < 0;
-  const bool searches = descends && !options.full_steps;
+  const bool searches = descends && !options.plain_steps;
   const double t = searches ? line_minimum(linear, quadratic, along) : 1;
   RBVI_CALL(VecAXPY(u, -t, y));
   if (frames) RBVI_CALL(VecPointwiseMin(u, u, upper.get()));
@@ -272,8 +272,9 @@ int NitscheSystem::newton(Vec u, std::string &reason) {
   reason = std::string("SNES: ") + SNESConvergedReasons[why];
   if (code != 0 || why == SNES_DIVERGED_LINEAR_SOLVE) throw failure(not_definite);
   if (why < 0)
-    throw failure(reason + " after " + std::to_string(iterations) +
-                  " Newton steps: try another -nitsche_gamma0, or more -nitsche_snes_max_it");
+    throw failure(reason + " after " + std::to_string(iterations) + " Newton steps: try " +
+                  (options.plain_steps ? "-nitsche_steps searched" : "another -nitsche_gamma0") +
+                  ", or more -nitsche_snes_max_it");
   return static_cast<int>(iterations);
 }
 
@@ -380,7 +381,7 @@ void NitscheSystem::set_linear_solver() {
     RBVI_CALL(MatMumpsSetIcntl(factor, 13, 1));
   }
   RBVI_CALL(SNESSetFromOptions(snes.get()));
-  if (options.full_steps)
+  if (options.plain_steps)
     RBVI_CALL(KSPSetTolerances(ksp, 1e-10, PETSC_DEFAULT, PETSC_DEFAULT, 200));
   RBVI_CALL(KSPGetTolerances(ksp, &linear_tolerance, nullptr, nullptr, nullptr));
 }

@@ -196,6 +196,10 @@ std::vector<Option> of_multipliers() {
 
 std::vector<Option> of_nitsche() {
   return {
+      choice("nitsche_steps",
+             {{"searched", "along each the least energy is taken; they start in contact"},
+              {"plain", "as published, from u = 0 (4.23), (4.41), (4.53): they may cycle"}},
+             RBVI_AT(hf.nitsche.plain_steps), "steps of Newton's method"),
       choice("nitsche_loop",
              {{"nested", "keeps it fixed within an outer loop (4.63)"},
               {"single", "updates it in every Newton step (4.53)"}},
@@ -221,6 +225,11 @@ std::vector<Option> of_nitsche() {
              "as the modes leave there"),
       number("nitsche_eim_tolerance", relative_error, RBVI_AT(reduce.curve.eim_tolerance),
              "interpolated: relative error that may be left over all (mu, Newton step) (B.32)"),
+      choice("nitsche_eim_pairs",
+             {{"steps", "all: without friction plain ones from u = 0, else those of the solver"},
+              {"published", "with Tresca's law plain ones, too, and B^n + B^tau in one; with "
+                            "Coulomb's the ends of the loops (4.63) alone"}},
+             RBVI_AT(reduce.curve.published_pairs), "interpolated: which Newton steps (4.73) has"),
       nitsche_eim_validation()};
 }
 

@@ -123,8 +123,8 @@ const OfMethod of_methods[] = {
      "contact that follows the displacement: set -kinematics large"},
     {"gcns_", collocates, "-multiplier_reduction collocated"},
     {"online_method", has_online_method,
-     "-multiplier_reduction collocated (uzawa), or for contact with multipliers that follows the "
-     "displacement (kacanov)"},
+     "-multiplier_reduction collocated (uzawa), for contact with multipliers that follows the "
+     "displacement (kacanov), or for -nitsche_quadrature interpolated (newton)"},
     {"tangential_", collocates, "-multiplier_reduction collocated"},
     {"multiplier_exact", collocates, "-multiplier_reduction collocated"},
     {"friction_bound", [](const ToolOptions &o) { return has_law(o.scene, FrictionLaw::tresca); },
@@ -157,6 +157,8 @@ bool has_online_method(const ToolOptions &options) {
     return has_multipliers(options.scene) && collocates(options);
   case OnlineMethod::kacanov:
     return has_multipliers(options.scene) && follows_state(options.scene);
+  case OnlineMethod::newton:
+    return !has_multipliers(options.scene) && options.reduce.curve.rule == CurveRule::interpolated;
   }
   return false;
 }

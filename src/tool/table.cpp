@@ -49,7 +49,8 @@ std::vector<Option> of_runs() {
                      text("train", OptionKind::set, "set", RBVI_AT(train),
                           "parameters of the training set: grid:5,5,5 | random:COUNT:SEED | COUNT "
                           "(seed 1) | corners (and centres of faces of the box) | file.csv with a "
-                          "header of names; several with ' + ' between them")),
+                          "header of names; several with ' + ' between them; 'grid:61 in "
+                          "radius=0.7,1.15', and random likewise, in a part of the box")),
            "training"),
       otherwise("the scene's", text("valid", OptionKind::set, "set", RBVI_AT(valid),
                                     "parameters of the validation set, given as -train is; verify "
@@ -73,7 +74,9 @@ std::vector<Option> of_runs() {
                            "-multiplier_reduction collocated: Uzawa's method on the reduced pair, "
                            "(3.40) or (3.55) until (3.19)",
                            "contact that follows the displacement: each step solves the problem "
-                           "linearised at the state before (A.7), not accelerated"}),
+                           "linearised at the state before (A.7), not accelerated",
+                           "-nitsche_quadrature interpolated: Newton's method (4.79) as published, "
+                           "from u_0 = 0 and without a rescue"}),
                   RBVI_AT(online_method),
                   "how the model answers, in verify and bench, and later in rbvi-online")),
       of_command(

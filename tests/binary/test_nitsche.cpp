@@ -67,6 +67,26 @@ TEST_F(Nitsche, FulfilsTheLawsAlongAnyNormal) {
   EXPECT_LT(value_of(lifted, "law_error_normal"), 0.2) << "of two arcs one is not touched";
 }
 
+/// Chapter 4 as it is: the published iteration answers where it converges.
+TEST_F(Nitsche, ThePublishedVariantIsVerifiedByThePublishedIteration) {
+  const std::string offline = output_of(rbvi(
+      1, "offline -case " RBVI_CASES "/rigid_disk -variant nitsche_published -friction tresca "
+         "-arc_edges 40 -train 'grid:9 in radius=0.7,1.15' -valid 'random:3:1 in radius=0.7,1.1' "
+         "-out run"));
+  EXPECT_TRUE(contains(offline, "9 solved")) << offline;
+  EXPECT_TRUE(contains(offline, "terms: B^n + B^tau ")) << offline;
+  const std::string verify = output_of(rbvi(1, "verify -out run"));
+  EXPECT_TRUE(contains(verify, "nitsche interpolated")) << verify;
+  const std::string usual = output_of(rbvi_online("run/model.h5 --mu 0.85 --method exact")),
+                    newton = output_of(rbvi_online("run/model.h5 --mu 0.85"));
+  EXPECT_NEAR(value_of(newton, "energy"), value_of(usual, "energy"),
+              1e-8 * value_of(usual, "energy"));
+  EXPECT_NE(value_of(newton, "iterations"), value_of(usual, "iterations"));
+  const Finished refused = shell(rbvi_online("run/model.h5 --mu 0.85 --method other"));
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_TRUE(contains(refused.err, "use one of exact")) << refused.err;
+}
+
 TEST_F(Nitsche, BadInputIsSaidInOneLine) {
   const std::string offline = "offline -case disk.yaml -out run ";
   expect_all_refused({{offline + "-hf_method uzawa", "mixed formulation"},

@@ -3,6 +3,7 @@
 #include "rbvi/core/box.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -183,6 +184,28 @@ TEST(ParameterSet, OfCornersAndOfSeveralSets) {
   EXPECT_THROW(parse_set(space, "corners + a.csv"), Error);
   EXPECT_FALSE(is_set_file("corners") || is_set_file("corners + random:3:7"));
   EXPECT_TRUE(is_set_file("corners.csv"));
+}
+
+/// The published radii, 0.7 + 0.0075 i for i <= 60, in a box that goes on to 1.3.
+TEST(ParameterSet, OfAPartOfTheBox) {
+  ParameterSpace space;
+  space.all = {{"a", "", 0.7, 1.3, 1}, {"b", "", 2, 4, 2}};
+  space.free = {0, 1};
+  const std::vector<Mu> whole = parse_set(space, "grid:81,2"),
+                        part =
+                            parse_set(space, "grid:61,2 in a=0.7,1.15 + random:50:3 in b = 3, 4");
+  ASSERT_EQ(part.size(), 172U);
+  for (std::size_t k = 0; k < 122; ++k) {
+    EXPECT_NEAR(part[k][0], whole[k][0], 1e-14);
+    EXPECT_EQ(part[k][1], whole[k][1]);
+  }
+  const auto low = [](const Mu &a, const Mu &b) { return a[1] < b[1]; };
+  const auto [lowest, highest] = std::minmax_element(part.begin() + 122, part.end(), low);
+  EXPECT_TRUE((*lowest)[1] >= 3 && (*lowest)[1] < 3.2 && (*highest)[1] > 3.8);
+  EXPECT_FALSE(is_set_file("grid:61,2 in a=0.7,1.15"));
+  for (const char *wrong : {"a=0.6,1", "a=1,0.8", "a=1,1.4", "a=1", "a", "c=0,1", "a=x,1"})
+    EXPECT_TRUE(refuses("", [&] { (void)parse_set(space, std::string("grid:3,2 in ") + wrong); }))
+        << wrong;
 }
 
 TEST(ParameterReader, GivesTheSetsOneByOne) {

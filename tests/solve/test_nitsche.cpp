@@ -147,6 +147,15 @@ TEST(NitscheDisk, TheErrorOfTheContactLawIsOfFirstOrderInTheEdges) {
   EXPECT_LT(error("158", "arc"), 0.5 * coarse);
 }
 
+/// Niakh (2022), table 4.1, h = 2.5 mm.
+TEST(NitscheDisk, ThePublishedErrorsOfTheContactLawComeOut) {
+  const Scene scene = disk("none", {{"gap_from", "edges"}});
+  for (const auto &[radius, printed] : {std::pair{0.7, 0.0052}, {1.0, 0.0072}, {1.3, 0.011}}) {
+    const HfSolution s = solve(scene, with_radius(radius), {.plain_steps = true});
+    EXPECT_NEAR(*s.outputs.law_error_normal, printed, 0.05 * printed) << radius;
+  }
+}
+
 /// What the answer minimises without friction: the energy with the terms of consistency and of
 /// contact.
 double functional(Problem &problem, NitscheSolver &solver, const Mu &mu) {
@@ -241,6 +250,61 @@ TEST(NitscheDisk, BoundsThatFollowEveryStepEndInTheSame) {
       expect_equal(s, solve(scene, with_radius(1.1, value)), 1e-10);
       EXPECT_LE(s.kkt.largest(), 1e-11);
     }
+}
+
+/// As published, from u = 0 and without line search; on 40 edges they converge with every law.
+TEST(NitscheDisk, PlainStepsEndInTheSame) {
+  for (const std::string &law : laws)
+    for (const bool single : {false, true}) {
+      SCOPED_TRACE(law + (single ? ", single loop" : ""));
+      const NitscheOptions plain{.single_loop = single, .plain_steps = true};
+      const Scene scene = small_disk(law);
+      Problem problem(PETSC_COMM_SELF, scene, {});
+      HfOptions options;
+      options.nitsche = plain;
+      HighFidelity solver(problem, options);
+      const Mu mu = suited(with_radius(0.9), scene);
+      const HfSolution first = solver.solve(mu);
+      expect_equal(first, solve(scene, with_radius(0.9)), 1e-10);
+      EXPECT_EQ(solver.solve(mu).iterations, first.iterations) << "no neighbour is a start";
+    }
+}
+
+/// On finer meshes points in the middle of the arc slip to either side in turn.
+TEST(NitscheDisk, PlainStepsThatCycleAreAFailureThatSaysWhatToTry) {
+  const PetscOption few("-nitsche_snes_max_it", "30");
+  for (const bool single : {false, true})
+    try {
+      (void)solve(disk("coulomb", {{"arc_edges", "80"}}), with_radius(1),
+                  {.single_loop = single, .plain_steps = true});
+      ADD_FAILURE();
+    } catch (const Error &error) {
+      EXPECT_NE(std::string(error.what()).find("30 Newton steps: try -nitsche_steps searched"),
+                std::string::npos)
+          << error.what();
+    }
+}
+
+/// What is handed out at the end of a loop is the answer with the bounds of that loop.
+TEST(NitscheDisk, EveryLoopIsSolvedToItsEndWhereThatIsAskedFor) {
+  Problem problem(PETSC_COMM_SELF, small_disk("coulomb"), {});
+  NitscheSolver solver(problem, {});
+  const Operators &op = problem.assemble(with_radius(1));
+  const NitscheLayer layer = layer_of(problem.contact());
+  const auto faces = nitsche_faces(layer, op.mu, layer.cells);
+  std::vector<Vector> ends, bounds;
+  solver.loop_end = [&](const Vector &u, const Vector &of_loop) {
+    ends.push_back(u);
+    bounds.push_back(of_loop);
+  };
+  const NitscheSolution last = solver.solve(op);
+  ASSERT_EQ(static_cast<int>(ends.size()), last.outer_iterations);
+  EXPECT_EQ(bounds.front().cwiseAbs().maxCoeff(), 0);
+  for (std::size_t k = 1; k < ends.size(); ++k)
+    EXPECT_LE((bounds[k] - nitsche_bounds(faces, nitsche_pressures(faces, ends[k - 1]))).norm(),
+              1e-12 * bounds[k].norm());
+  EXPECT_LE((ends.back() - last.layer).norm(), 1e-12 * last.layer.norm());
+  EXPECT_GT((ends[1] - ends[0]).norm(), 1e-4 * ends[1].norm());
 }
 
 TEST(NitscheDisk, ANeighboursStateIsAGoodStart) {

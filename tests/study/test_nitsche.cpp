@@ -135,6 +135,90 @@ TEST(NitscheReduced, InterpolatedOperatorsGiveTheSnapshotsBack) {
   }
 }
 
+ReduceOptions published() {
+  ReduceOptions options = with(CurveRule::interpolated);
+  options.curve.published_pairs = true;
+  return options;
+}
+
+/// With Tresca's law B^n + B^tau has one interpolation, over plain steps: what the answers and the
+/// terms at the training steps are stays as it is.
+TEST(NitscheReduced, TangentsInterpolatedTogetherGiveTheSnapshotsBack) {
+  ReducedAlone r(disk("tresca"), "grid:7");
+  r.reduce(published());
+  check_model(r.model);
+  const NitscheModel &curve = *r.model.contact.nitsche;
+  EXPECT_EQ(curve.contact_matrix.size(), 0);
+  EXPECT_GT(curve.friction_matrix.size(), 0);
+  EXPECT_GT(curve.contact_vector.size(), 0);
+  EXPECT_TRUE(describe_curve(r.model).starts_with("terms: B^n + B^tau "))
+      << describe_curve(r.model);
+  const auto &histories = r.model.made.histories;
+  EXPECT_FALSE(histories.contains("curve/contact_matrix"));
+  EXPECT_LE(histories.at("curve/friction_matrix").back(), 1e-10);
+  int pairs = 0;
+  NitscheSolver plain(r.problem, {.plain_steps = true});
+  for (const Sample &sample : r.samples)
+    pairs += plain.solve(r.problem.assemble(sample.mu)).iterations + 1;
+  EXPECT_EQ(histories.at("curve/states").front(), pairs);
+  const ModelErrors e = r.errors_at(r.samples);
+  EXPECT_EQ(e.failed, 0);
+  EXPECT_LE(e.u.maxCoeff(), 1e-6);
+}
+
+TEST(NitscheReduced, OfCoulombsLawTheEndsOfLoopsAreTaken) {
+  ReducedAlone r(disk("coulomb"), "grid:7");
+  r.reduce(published());
+  int loops = 0;
+  NitscheSolver solver(r.problem, {});
+  solver.loop_end = [&](const Vector &, const Vector &) { ++loops; };
+  for (const Sample &sample : r.samples)
+    (void)solver.solve(r.problem.assemble(sample.mu));
+  EXPECT_EQ(r.model.made.histories.at("curve/states").front(), loops);
+  EXPECT_GT(r.model.contact.nitsche->contact_matrix.size(), 0);
+  EXPECT_LE(r.errors_at(r.samples).u.maxCoeff(), 1e-6);
+}
+
+/// (4.79) from u_0 goes through the very steps of the training where those are interpolated.
+TEST(NitscheReduced, ThePublishedIterationEndsInTheAnswerOfTheOther) {
+  for (const char *friction : {"none", "tresca"}) {
+    SCOPED_TRACE(friction);
+    ReducedAlone r(disk(friction), "grid:7");
+    ReduceOptions options = published();
+    options.pod.tolerance = 0;
+    r.reduce(options);
+    OnlineSolver usual(r.model), newton(r.model, {.method = OnlineMethod::newton});
+    for (const Sample &sample : r.samples) {
+      const ReducedAnswer answer = newton.solve(sample.mu);
+      const Vector u = usual.solve(sample.mu).u;
+      EXPECT_LE((answer.u - u).norm(), 1e-8 * u.norm());
+      EXPECT_GT(answer.iterations, usual.solve(sample.mu).iterations);
+    }
+  }
+}
+
+/// Beyond its training radii it cycles, where the other goes on by the derivative.
+TEST(NitscheReduced, ThePublishedIterationHasNoRescue) {
+  ReducedAlone r(disk("none"), "grid:13 in radius=0.7,1");
+  ReduceOptions options = with(CurveRule::interpolated);
+  options.curve.eim_tolerance = 1e-6;
+  r.reduce(options);
+  OnlineSolver usual(r.model);
+  OnlineSolver newton(r.model, {.method = OnlineMethod::newton});
+  int lost = 0;
+  for (const Mu &mu : parse_set(r.problem.scene().parameters, "grid:21"))
+    try {
+      EXPECT_LE(usual.solve(mu).residual, 1e-8);
+      EXPECT_LE(newton.solve(mu).residual, 1e-8);
+    } catch (const Error &error) {
+      ++lost;
+      EXPECT_NE(std::string(error.what()).find("use the method exact"), std::string::npos);
+    }
+  EXPECT_GT(lost, 0);
+  r.reduce(with(CurveRule::full, 5));
+  EXPECT_THROW(OnlineSolver(r.model, {.method = OnlineMethod::newton}), Error);
+}
+
 /// Over the training set, they are those that the selection saw.
 TEST(NitscheReduced, ErrorsOfTheInterpolationAreMeasuredOverFurtherParameters) {
   ReducedAlone r(disk("none"), "grid:7");

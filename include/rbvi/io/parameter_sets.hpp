@@ -12,8 +12,10 @@ namespace rbvi {
 
 /// Reads "grid:5,5,5" (box ends included, last parameter fastest; a count of 1 is the middle),
 /// "random:200:seed" or "200" for seed 1 (uniform, the same on every machine), "corners"
-/// (corners_and_faces), several of these with " + " between them, or the name of a CSV file with a header of parameter names, in any order; columns that a table of rbvi has beside
-/// them (is_table_column) are passed over. Every mu is checked. Throws bad_input, naming the line.
+/// (corners_and_faces), several of these with " + " between them, grid and random also in a part of
+/// the box, "grid:61 in radius=0.7,1.15", or the name of a CSV file with a header of parameter
+/// names, in any order; columns that a table of rbvi has beside them (is_table_column) are passed
+/// over. Every mu is checked. Throws bad_input, naming the line.
 std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text,
                           bool allow_outside = false);
 

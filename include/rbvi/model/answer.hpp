@@ -42,12 +42,13 @@ constexpr double largest_left = 1e-8;
 
 /// By which iteration.
 enum class OnlineMethod {
-  exact,  ///< the fastest one that there is, to round-off
-  uzawa,  ///< the law on fewer functions by Uzawa's method, (3.40) or (3.55) to (3.19)
-  kacanov ///< contact that follows the displacement by (A.7) alone, not accelerated
+  exact,   ///< the fastest one that there is, to round-off
+  uzawa,   ///< the law on fewer functions by Uzawa's method, (3.40) or (3.55) to (3.19)
+  kacanov, ///< contact that follows the displacement by (A.7) alone, not accelerated
+  newton   ///< interpolated operators of Nitsche's method: (4.79) from u_0 = 0, without a rescue
 };
 
-/// "exact", "uzawa", "kacanov".
+/// "exact", "uzawa", "kacanov", "newton".
 const std::vector<std::string> &online_method_names();
 /// Throws bad_input for another name.
 OnlineMethod online_method(const std::string &name);

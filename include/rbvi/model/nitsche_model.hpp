@@ -35,10 +35,11 @@ struct LayerTerms {
 struct NitscheModel {
   LayerTerms consistency; ///< a_gamma - a, a matrix
   CurveRule rule = CurveRule::empirical;
-  std::vector<int> points;                     ///< empirical: 4 * cell + Gauss point
-  Vector factors;                              ///< empirical: of the weights of these points, > 0
-  LayerTerms contact_matrix, contact_vector;   ///< interpolated: B^n, Theta^n
-  LayerTerms friction_matrix, friction_vector; ///< interpolated: B^tau, Theta^tau
+  std::vector<int> points;                   ///< empirical: 4 * cell + Gauss point
+  Vector factors;                            ///< empirical: of the weights of these points, > 0
+  LayerTerms contact_matrix, contact_vector; ///< interpolated: B^n, Theta^n
+  /// Interpolated: B^tau, where there are no terms of B^n B^n + B^tau; Theta^tau.
+  LayerTerms friction_matrix, friction_vector;
   /// Where a query starts from: P_n, then P_tau of the training samples at the points.
   /// Interpolated: their n coefficients.
   Matrix starts;

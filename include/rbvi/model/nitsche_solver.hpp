@@ -23,7 +23,7 @@ namespace rbvi {
 class ReducedNitsche : public QueryMethod {
 public:
   /// `model`, and the scene of the layer, must outlive it.
-  ReducedNitsche(const ReducedModel &model, NitscheLayer layer);
+  ReducedNitsche(const ReducedModel &model, NitscheLayer layer, const QueryOptions &options = {});
   ~ReducedNitsche() override;
   /// Starts from what the training samples predict; where there are none, from u = 0. Throws
   /// failure, saying what to try, where Newton's method does not converge or the tangent is not
@@ -66,6 +66,7 @@ private:
   SampledLayer consistency_;
   std::unique_ptr<System> system_;
   std::unique_ptr<Interpolated> interpolated_;
+  const bool from_rest_;                  ///< OnlineMethod::newton
   mutable std::unique_ptr<System> whole_; ///< made by the first outputs of a model with few points
 };
 

@@ -22,6 +22,7 @@ static_assert(EIGEN_DEFAULT_ALIGN_BYTES == 64 && alignof(Eigen::Matrix<double, 8
 /// round-off, not on the queries before (but QueryOptions::warm).
 class OnlineSolver {
 public:
+  /// Throws bad_input for a method that is not one of the model.
   explicit OnlineSolver(const ReducedModel &model, const QueryOptions &options = {});
   OnlineSolver(const OnlineSolver &) = delete;
   /// With the forms, map and obstacle of `scene` instead of those of the model.

@@ -18,6 +18,9 @@ struct CurveOptions {
   /// what the modes leave.
   double tolerance = 0;
   double eim_tolerance = 1e-6; ///< interpolated: of the matrices and vectors (B.32)
+  /// interpolated, with friction: the pairs of (4.73) as published. Of Tresca's law those of plain
+  /// steps, with B^n + B^tau in place of either; else the ends of the loops (4.63) alone.
+  bool published_pairs = false;
   /// interpolated: the errors over the Newton steps at these are reported, too.
   std::vector<Mu> eim_validation;
 };
@@ -34,7 +37,7 @@ struct CurveReport {
   std::vector<int> points;
   std::vector<double> error;
   // Interpolated.
-  std::array<EimErrors, 4> eim_errors; ///< of B^n, Theta^n, B^tau, Theta^tau
+  std::array<EimErrors, 4> eim_errors; ///< as in NitscheModel: B^n, Theta^n, B^tau, Theta^tau
   int states = 0;                      ///< pairs (mu, Newton step)
 };
 

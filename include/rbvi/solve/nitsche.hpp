@@ -20,7 +20,7 @@ namespace rbvi {
 
 struct NitscheOptions {
   bool single_loop = false;    ///< moving bounds of friction: (4.53) instead of (4.63)
-  bool full_steps = false;     ///< Newton's steps as they are, from u = 0: (4.23) as printed
+  bool plain_steps = false;    ///< as printed (4.23), (4.41), (4.53), from u = 0: no line search
   bool nonpenetration = false; ///< SNES bounds the normal displacement of the nodes by the gap
 };
 
@@ -54,12 +54,14 @@ public:
   NitscheSolver(Problem &problem, const NitscheOptions &options);
   ~NitscheSolver();
   /// Collective. `op`: the problem assembled at some mu; `start`: null: u = 0, in contact where its
-  /// penetration is above half of the largest. Throws failure, saying what to try, where SNES does
-  /// not converge or a tangent is not positive definite (gamma0 too small).
+  /// penetration is above half of the largest; plain steps take none. Throws failure, saying what
+  /// to try, where SNES does not converge or a tangent is not positive definite (gamma0 too small).
   NitscheSolution solve(const Operators &op, const NitscheStart *start = nullptr);
   /// Called with u at the contact dofs at the start of every Newton step, and the bounds of
   /// friction.
   std::function<void(const Vector &layer, const Vector &bounds)> watch;
+  /// Where it is given, every loop is solved to its end, and this is called there with the same.
+  std::function<void(const Vector &layer, const Vector &bounds)> loop_end;
 
 private:
   void run(bool nested, Vec u, NitscheSolution &result);
