@@ -41,10 +41,10 @@ public:
   Iteration(const SetSolver &solve, const Vector &diagonal, const NodeLaws &laws,
             const FrictionOptions &options, const LargestOverRanks &largest)
       : solve_(solve), order_(laws), laws_(laws_of(laws)), rows_(laws.rows),
-        diagonal_(order_.inwards(Matrix(diagonal))), options_(options), largest_(largest) {}
+        diagonal_(order_.inwards(diagonal)), options_(options), largest_(largest) {}
 
   FrictionResult run(const Vector &start, bool by_rule) {
-    const Vector from = start.size() > 0 ? Vector(order_.inwards(Matrix(start))) : start;
+    const Vector from = order_.inwards(start);
     const double coefficient = largest(laws_.nodes > 0 ? laws_.coefficient.maxCoeff() : 0);
     return by_rule && coefficient > 0 ? continued(from, Laws::steps_to(coefficient))
                                       : iterate(from);
@@ -58,7 +58,7 @@ private:
       laws_ = all.with_part(static_cast<double>(k) / steps);
       const FrictionResult found = iterate(from);
       if (!found.converged) break;
-      from = order_.inwards(Matrix(found.start));
+      from = order_.inwards(found.start);
     }
     laws_ = all;
     return iterate(from);
@@ -90,8 +90,7 @@ private:
 
   State solved(const ActiveSets &sets, double accuracy) const {
     const SetSolution found = solve_(system_of(laws_, order_, sets, rows_), accuracy);
-    return {order_.inwards(Matrix(found.x)), order_.inwards(Matrix(found.w)),
-            order_.inwards(Matrix(found.terms))};
+    return {order_.inwards(found.x), order_.inwards(found.w), order_.inwards(found.terms)};
   }
 
   double largest(double value) const { return largest(Vector(Vector::Constant(1, value)))[0]; }

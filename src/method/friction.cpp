@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <string>
 
 namespace rbvi {
 
@@ -16,7 +18,6 @@ namespace {
 using namespace friction;
 
 void check(const Vector &q, const NodeLaws &laws, const Vector &start) {
-  rbvi::check(laws);
   if (q.size() != laws.rows)
     throw failure("friction: the right-hand side has " + std::to_string(q.size()) +
                   " entries, and the laws " + std::to_string(laws.rows));
@@ -52,10 +53,9 @@ LcpResult normal_contact(LazyColumns &h, const Vector &q, Index nodes, const Vec
                    {.tolerance = options.tolerance, .max_iterations = options.max_iterations});
 }
 
-FrictionResult without_friction(const ColumnSource &columns, const Vector &q, const Laws &laws,
+FrictionResult without_friction(LazyColumns &h, const Vector &q, const Laws &laws,
                                 const Vector &start, const FrictionOptions &options) {
   const Index nodes = laws.nodes;
-  LazyColumns h(columns, q.size());
   LcpResult normal = normal_contact(h, q, nodes, start, options);
   FrictionResult result;
   result.iterations = normal.iterations;
@@ -77,9 +77,10 @@ FrictionResult without_friction(const ColumnSource &columns, const Vector &q, co
 
 class Solver {
 public:
-  Solver(const ColumnSource &columns, const Vector &q, const Laws &laws,
-         const FrictionOptions &options)
-      : h_(columns, q.size()), q_(q), laws_(laws), options_(options),
+  /// `known`: keys of active sets at which it ends; those that it comes to are added.
+  Solver(LazyColumns &h, const Vector &q, const Laws &laws, const FrictionOptions &options,
+         std::set<std::string> &known)
+      : h_(h), q_(q), laws_(laws), options_(options), known_(known),
         best_sets_(laws.nodes, laws.dim), systems_left_(options.max_iterations) {}
 
   FrictionAnswer run(const Vector &start, bool by_rule) {
@@ -101,11 +102,12 @@ public:
       outcome = laws_.jump() && laws_.coefficient.isZero(0) ? settle_contact(std::move(point))
                                                             : backup(std::move(point));
     }
-    return finish(outcome);
+    known_.merge(visited_);
+    return outcome == Outcome::known ? FrictionAnswer() : finish(outcome);
   }
 
 private:
-  enum class Outcome { converged, cycles, indefinite, limit };
+  enum class Outcome { converged, known, cycles, indefinite, limit };
 
   /// Along growing coefficients, from the last point that is reached.
   Outcome continued_from_no_friction(const Vector &guess) {
@@ -155,7 +157,12 @@ private:
   Outcome newton_from(const Laws &laws, ActiveSets sets, State &point) {
     pivoting::Policy<std::string, double> policy(/*patience=*/10);
     for (;;) {
-      if (laws.dim == 2 && policy.returns(sets.key())) return Outcome::cycles;
+      if (laws.dim == 2) {
+        const std::string key = sets.key();
+        if (&laws == &laws_ && known_.contains(key)) return Outcome::known;
+        if (&laws == &laws_) visited_.insert(key);
+        if (policy.returns(key)) return Outcome::cycles;
+      }
       if (systems_left_ <= 0) return Outcome::limit;
       --systems_left_;
       h_.require(sets.support(laws));
@@ -287,11 +294,12 @@ private:
            after + remedy + ", lower the coefficient, or raise the limit";
   }
 
-  LazyColumns h_;
+  LazyColumns &h_;
   const Vector &q_;
   const Laws &laws_;
   const FrictionOptions &options_;
-  State best_; ///< the solution, or the point of the least residual
+  std::set<std::string> &known_, visited_; ///< by the laws themselves
+  State best_;                             ///< the solution, or the point of the least residual
   ActiveSets best_sets_;
   FrictionResult result_;
   int systems_left_;   ///< linear systems
@@ -300,22 +308,63 @@ private:
 
 } // namespace
 
+struct FrictionSolver::Parts {
+  Parts(ColumnSource source, const NodeLaws &of)
+      : given(of), order(given), laws(laws_of(given)), columns(std::move(source)),
+        ordered(order.inwards(columns)), h(ordered, order.size()) {
+    rbvi::check(given);
+  }
+  FrictionAnswer run(const Vector &start, bool rule) {
+    check(q, given, start);
+    const Vector right = order.inwards(q), from = order.inwards(start);
+    FrictionAnswer result = given.friction()
+                                ? Solver(h, right, laws, options, known).run(from, rule)
+                                : FrictionAnswer{without_friction(h, right, laws, from, options)};
+    for (Vector *part : {&result.x, &result.w, &result.start})
+      *part = order.outwards(*part);
+    return result;
+  }
+
+  const NodeLaws given;
+  const Order order;
+  const Laws laws;
+  const ColumnSource columns, ordered;
+  LazyColumns h;
+  Vector q; ///< of the last answer
+  FrictionOptions options;
+  bool by_rule = false;
+  std::set<std::string> known; ///< ActiveSets::key() on the way to answers to q
+};
+
+FrictionSolver::FrictionSolver(ColumnSource columns, const NodeLaws &laws)
+    : parts_(std::make_unique<Parts>(std::move(columns), laws)) {}
+
+FrictionSolver::~FrictionSolver() = default;
+
+FrictionAnswer FrictionSolver::answer(const Vector &q, const Vector &start, bool by_rule,
+                                      const FrictionOptions &options) {
+  parts_->q = q;
+  parts_->options = options;
+  parts_->by_rule = by_rule;
+  parts_->known.clear();
+  return parts_->run(start, by_rule);
+}
+
+FrictionAnswer FrictionSolver::another(const Vector &start, bool by_rule) {
+  return parts_->run(start, by_rule);
+}
+
+const NodeLaws &FrictionSolver::laws() const {
+  return parts_->given;
+}
+
+bool FrictionSolver::by_rule() const {
+  return parts_->by_rule;
+}
+
 FrictionAnswer friction_answer(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,
                                const Vector &start, bool by_rule, const FrictionOptions &options) {
-  check(q, laws, start);
-  const Laws inner = laws_of(laws);
-  const auto solve = [&](const ColumnSource &source, const Vector &right, const Vector &from) {
-    return laws.friction() ? Solver(source, right, inner, options).run(from, by_rule)
-                           : FrictionAnswer{without_friction(source, right, inner, from, options)};
-  };
-  const Order order(laws);
-  if (order.same()) return solve(columns, q, start);
-  const ColumnSource ordered = order.inwards(columns);
-  FrictionAnswer result = solve(ordered, order.inwards(Matrix(q)),
-                                start.size() > 0 ? Vector(order.inwards(Matrix(start))) : start);
-  for (Vector *part : {&result.x, &result.w, &result.start})
-    *part = order.outwards(*part);
-  return result;
+  return FrictionSolver(columns, laws).answer(q, start, by_rule, options);
 }
 
 FrictionResult solve_friction(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,

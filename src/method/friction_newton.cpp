@@ -28,6 +28,11 @@ Matrix assemble(const LazyColumns &h, const Laws &laws, const ActiveSets &sets,
                 const std::vector<Unknown> &list, const Vector &unit) {
   const Index count = static_cast<Index>(list.size());
   Matrix matrix(count, count);
+  std::vector<Index> rows, turns; // turns: rows of two entries
+  for (Index k = 0; k < count; ++k) {
+    rows.push_back(list[k].first);
+    if (list[k].b != 0) turns.push_back(k);
+  }
   Vector column;
   for (Index k = 0; k < count; ++k) {
     const Unknown &u = list[k];
@@ -36,11 +41,12 @@ Matrix assemble(const LazyColumns &h, const Laws &laws, const ActiveSets &sets,
     if (u.slope > 0)
       for (int j = 0; j < laws.dim - 1; ++j)
         column += u.slope * sets.direction(j, u.node) * h.column(laws.tangent(u.node) + j);
-    for (Index r = 0; r < count; ++r) {
-      const Unknown &row = list[r];
-      matrix(r, k) = unit[k] * unit[r] * (row.a * column[row.first] + row.b * column[row.second]);
-    }
-    matrix(k, k) += u.curvature * unit[k] * unit[k];
+    auto of_rows = matrix.col(k);
+    of_rows = column(rows);
+    for (const Index r : turns)
+      of_rows[r] = list[r].a * column[list[r].first] + list[r].b * column[list[r].second];
+    of_rows[k] += u.curvature;
+    of_rows.array() *= unit[k] * unit.array();
   }
   return matrix;
 }

@@ -34,11 +34,17 @@ Matrix LazyColumns::block(const std::vector<Index> &active) const {
 
 std::pair<Vector, Vector> LazyColumns::multiply(const std::vector<Index> &active,
                                                 const Vector &x) const {
-  Vector spread = Vector::Zero(count_);
-  for (std::size_t k = 0; k < active.size(); ++k)
-    spread[slot(active[k])] = x[static_cast<Index>(k)];
-  const auto h = h_.leftCols(count_);
-  return {h * spread, h.cwiseAbs() * spread.cwiseAbs()};
+  Vector product = Vector::Zero(h_.rows()), sizes = product;
+  const auto add = [&](auto... k) {
+    product += (... + (x[k] * column(active[k])));
+    sizes += (... + (std::abs(x[k]) * column(active[k]).cwiseAbs()));
+  };
+  Index k = 0;
+  for (; k + 4 <= x.size(); k += 4) // which reads and writes the sums once for four columns
+    add(k, k + 1, k + 2, k + 3);
+  for (; k < x.size(); ++k)
+    add(k);
+  return {std::move(product), std::move(sizes)};
 }
 
 } // namespace rbvi

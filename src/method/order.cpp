@@ -13,7 +13,11 @@ Order::Order(const NodeLaws &laws) : rows_(laws.rows) {
     same_ = same_ && row(j) == j;
 }
 
-Matrix Order::inwards(const Matrix &values) const {
+Vector Order::inwards(const Vector &values) const {
+  return same_ || values.size() == 0 ? values : Vector(reordered(values));
+}
+
+Matrix Order::reordered(const Matrix &values) const {
   Matrix result = Matrix::Zero(size(), values.cols());
   for (Index j = 0; j < size(); ++j)
     if (row(j) >= 0) result.row(j) = values.row(row(j));
@@ -21,6 +25,7 @@ Matrix Order::inwards(const Matrix &values) const {
 }
 
 Vector Order::outwards(const Vector &values) const {
+  if (same_) return values;
   Vector result = Vector::Zero(values.size() > 0 ? rows_ : 0);
   for (Index j = 0; j < size() && values.size() > 0; ++j)
     if (row(j) >= 0) result[row(j)] = values[j];
@@ -28,10 +33,11 @@ Vector Order::outwards(const Vector &values) const {
 }
 
 ColumnSource Order::inwards(const ColumnSource &columns) const {
+  if (same_) return columns;
   return [this, &columns](std::vector<Index> which) {
     for (Index &j : which)
       j = row(j);
-    return inwards(columns(which));
+    return reordered(columns(which));
   };
 }
 

@@ -9,14 +9,15 @@ namespace rbvi::friction {
 class Order {
 public:
   explicit Order(const NodeLaws &laws);
-  bool same() const { return same_; }
   Index size() const { return std::ssize(of_); }
   Index row(Index j) const { return of_[j]; } ///< of entry j; -1: none
-  Matrix inwards(const Matrix &values) const;
+  Vector inwards(const Vector &values) const; ///< empty remains so, here and there
   Vector outwards(const Vector &values) const;
-  ColumnSource inwards(const ColumnSource &columns) const;
+  ColumnSource inwards(const ColumnSource &columns) const; ///< which must outlive it
 
 private:
+  Matrix reordered(const Matrix &values) const;
+
   Index rows_;
   std::vector<Index> of_; ///< row of each entry, -1: none
   bool same_;

@@ -1,7 +1,5 @@
 #include "rbvi/method/several_answers.hpp"
 
-#include "lazy_columns.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -21,24 +19,16 @@ double distance_of_answers(const Vector &x, const Vector &other) {
   return largest > least_distance * size ? largest / size : 0;
 }
 
-double distance_to_other_answer(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,
-                                const FrictionResult &found) {
+double distance_to_other_answer(FrictionSolver &solver, const FrictionResult &found) {
+  const NodeLaws &laws = solver.laws();
   if (!bounds_follow_pressure(laws)) return 0;
-  LazyColumns h(columns, q.size());
-  const ColumnSource kept = [&](const std::vector<Index> &which) {
-    h.require(which);
-    Matrix result(q.size(), std::ssize(which));
-    for (std::size_t k = 0; k < which.size(); ++k)
-      result.col(static_cast<Index>(k)) = h.column(which[k]);
-    return result;
-  };
   double farthest = 0;
   const auto look = [&](const Vector &start, bool by_rule) {
-    const FrictionResult other = friction_answer(kept, q, laws, start, by_rule);
+    const FrictionResult other = solver.another(start, by_rule);
     if (other.converged) farthest = std::max(farthest, distance_of_answers(found.x, other.x));
   };
   look({}, false);
-  look(found.start, true);
+  if (!solver.by_rule()) look(found.start, true);
   for (const double slip : {0.0, 1.0, -1.0}) {
     Vector start = found.start;
     for (Index i = 0; i < laws.nodes(); ++i) {

@@ -69,7 +69,7 @@ Vector CollocatedSolver::start(const FullMu &mu) {
   return starts_.nearest(parts_of_box(scene_.parameters, mu), [&](Index sample) {
     const Vector there = model_.contact.law->starts_mu.col(sample);
     ReducedAnswer unused;
-    const LawAtMu law =
+    const LawAtMu &law =
         at_nodes_.problem().at(expand(scene_.parameters, {there.begin(), there.end()}), unused);
     return solve_functions(law, {}).x;
   });
@@ -104,13 +104,13 @@ bool CollocatedSolver::answer_on_functions(const LawAtMu &law, const Vector &sta
   return !mends || answer.residual <= mended_above;
 }
 
-ReducedAnswer CollocatedSolver::solve(const FullMu &mu, const Relaxed &relaxed) {
+ReducedAnswer CollocatedSolver::solve(const FullMu &mu, Relaxed relaxed) {
   const Vector from = start(mu);
-  ReducedAnswer answer;
-  const LawAtMu law = at_nodes_.problem().at(mu, answer, {}, relaxed.beta);
+  ReducedAnswer answer = std::move(relaxed.before);
+  answer.start.resize(0);
+  answer.iterations = 0;
+  const LawAtMu &law = at_nodes_.problem().at(mu, answer, {}, relaxed.beta);
   if (!answer_on_functions(law, from, answer)) at_nodes_.solve_at_nodes(law, answer);
-  at_nodes_.problem().finish(law, answer);
-  at_nodes_.starts().keep(answer.start);
   return answer;
 }
 

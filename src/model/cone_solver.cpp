@@ -115,8 +115,11 @@ void ConeSolver::finish(ReducedAnswer &answer) {
       kkt_residual({at_mu_.restricted(au), at_mu_.restricted(btx), at_mu_.restricted(f_), bu, g_,
                     answer.lambda, model_.contact.free_modes, terms});
   answer.least_pressure = active_fraction;
-  if (model_.body.springs.size() > 0)
-    answer.motions = free_motions_at(at_mu_, b_scale_ * b_, uniform_laws(b_.rows(), 1, {}));
+  if (model_.body.springs.size() > 0) {
+    const Matrix motions = at_mu_.free_motions();
+    answer.motions =
+        free_motions_at(at_mu_, motions, b_scale_ * (b_ * motions), uniform_laws(b_.rows(), 1, {}));
+  }
   if (!(answer.residual <= largest_left))
     throw failure((std::ostringstream("the reduced answer has a KKT residual of ", std::ios::ate)
                    << answer.residual << ": reduce again with fewer generators or more supremizers")
@@ -203,10 +206,10 @@ void ConeSolver::start(const FullMu &mu) {
     qp_.start_from(start.active);
 }
 
-ReducedAnswer ConeSolver::solve(const FullMu &mu, const Relaxed &relaxed) {
+ReducedAnswer ConeSolver::solve(const FullMu &mu, Relaxed relaxed) {
   ReducedAnswer answer;
   answer.mu = mu;
-  beta_ = relaxed.beta;
+  beta_ = std::move(relaxed.beta);
   if (!options_.warm) start(mu);
   solve_from_start(answer);
   return answer;

@@ -49,7 +49,7 @@ NonlinearStart FollowingSolver::start(const FullMu &mu) const {
   return start;
 }
 
-ReducedAnswer FollowingSolver::solve(const FullMu &mu, const Relaxed &relaxed) {
+ReducedAnswer FollowingSolver::solve(const FullMu &mu, Relaxed relaxed) {
   if (evaluated_.set_compliance(mu) && nodal_) nodal_->forget();
   at_mu_.set(mu, relaxed.beta);
   Vector load; // half response to it
@@ -83,9 +83,12 @@ ReducedAnswer FollowingSolver::solve(const FullMu &mu, const Relaxed &relaxed) {
   answer.energy = 0.5 * (answer.reaction.dot(problem.free - found.state) - load.squaredNorm());
   answer.u = evaluated_.moved_by(at_mu_, answer.reaction);
   if (load.size() > 0) answer.u += at_mu_.transposed_half_response(load);
-  if (model_.body.springs.size() > 0)
-    answer.motions = free_motions_at(
-        at_mu_, evaluated_.rows() * answer.contact.b * model_.contact.trace, problem.laws);
+  if (model_.body.springs.size() > 0) {
+    const Matrix motions = at_mu_.free_motions();
+    const Matrix held =
+        evaluated_.rows() * (answer.contact.b * Matrix(model_.contact.trace * motions));
+    answer.motions = free_motions_at(at_mu_, motions, held, problem.laws);
+  }
   answer.residual = found.residual;
   answer.iterations = found.steps;
   answer.load_steps = found.load_steps;

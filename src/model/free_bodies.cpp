@@ -10,10 +10,10 @@
 
 namespace rbvi {
 
-FreeMotions free_motions_at(const BodyAtMu &body, const Matrix &b, NodeLaws laws) {
-  const Matrix motions = body.free_motions();
+FreeMotions free_motions_at(const BodyAtMu &body, const Matrix &motions, Matrix held,
+                            NodeLaws laws) {
   const Vector load = body.given_load();
-  return {std::move(laws), b * motions, motions.transpose() * load,
+  return {std::move(laws), std::move(held), motions.transpose() * load,
           motions.cwiseAbs().transpose() * load.cwiseAbs()};
 }
 
@@ -40,7 +40,11 @@ Vector start_of(const ReducedModel &model, const Scene &scene, const FullMu &mu)
 
 ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, const Scene &scene,
                              const FullMu &mu) {
-  if (model.body.springs.size() == 0) return method.solve(mu, {});
+  if (model.body.springs.size() == 0) {
+    ReducedAnswer answer = method.solve(mu, {});
+    method.displace(answer);
+    return answer;
+  }
   const std::string unheld =
       "a body that contact alone holds is pushed where no contact and no friction can hold it";
   const Vector start = start_of(model, scene, mu);
@@ -48,8 +52,7 @@ ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, con
   int iterations = 0;
   double to_other = 0;
   const Balance balance = find_balance(start, [&](const Vector &beta) {
-    Vector from = std::move(answer.start);
-    answer = method.solve(mu, {beta, std::move(from)});
+    answer = method.solve(mu, {beta, std::move(answer)});
     iterations += answer.iterations;
     to_other = std::max(to_other, answer.to_other);
     const FreeMotions &motions = *answer.motions;
@@ -68,6 +71,7 @@ ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, con
                   " solves: reduce again with more training parameters");
   if (loose_motions(answer.motions->laws, answer.motions->held, answer.lambda).cols() > 0)
     throw failure("a body can move at no cost: no contact and no friction holds it at the answer");
+  method.displace(answer);
   answer.iterations = iterations;
   answer.to_other = to_other;
   const Vector theta = spring_coefficients(model, scene, mu);

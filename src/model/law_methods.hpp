@@ -14,11 +14,11 @@ public:
   /// `by_rule`: as in friction_answer.
   NodeLawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
                 const QueryOptions &options, bool by_rule);
-  ReducedAnswer solve(const FullMu &mu, const Relaxed &relaxed) override;
+  ReducedAnswer solve(const FullMu &mu, Relaxed relaxed) override;
+  void displace(ReducedAnswer &answer) override;
   /// From answer.start, where that is there, or from what the samples predict.
   void solve_at_nodes(const LawAtMu &law, ReducedAnswer &answer);
   LawProblem &problem() { return problem_; }
-  LawStarts &starts() { return starts_; }
 
 private:
   const bool by_rule_, looks_for_others_;
@@ -32,7 +32,8 @@ class CollocatedSolver : public QueryMethod {
 public:
   CollocatedSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
                    const QueryOptions &options);
-  ReducedAnswer solve(const FullMu &mu, const Relaxed &relaxed) override;
+  ReducedAnswer solve(const FullMu &mu, Relaxed relaxed) override;
+  void displace(ReducedAnswer &answer) override { at_nodes_.displace(answer); }
 
 private:
   Vector start(const FullMu &mu);
@@ -54,7 +55,7 @@ class FollowingSolver : public QueryMethod {
 public:
   FollowingSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
                   const QueryOptions &options, bool by_rule);
-  ReducedAnswer solve(const FullMu &mu, const Relaxed &relaxed) override;
+  ReducedAnswer solve(const FullMu &mu, Relaxed relaxed) override;
 
 private:
   NonlinearStart start(const FullMu &mu) const;

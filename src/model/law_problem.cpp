@@ -25,42 +25,48 @@ LawProblem::LawProblem(const ReducedModel &model, const Scene &scene, const Cont
       edge_(edge_of_nodes(contact, model.contact.dual_basis)), body_(model, scene), at_mu_(body_),
       contact_(reduced_contact(model, scene, contact, body_)) {}
 
-LawAtMu LawProblem::at(const FullMu &mu, ReducedAnswer &answer, const Vector &state,
-                       const Vector &beta) {
-  if (beta.size() > 0) return relaxed(mu, beta, answer);
+const LawAtMu &LawProblem::at(const FullMu &mu, ReducedAnswer &answer, const Vector &state,
+                              const Vector &beta) {
+  if (!(answer.motions && mu_ == mu)) {
+    mu_.reset(); // until all of it is there
+    set(mu, state, answer);
+    if (beta.size() > 0) set_springs(answer);
+    mu_ = mu;
+  }
+  if (beta.size() > 0) {
+    const Vector forces = theta_.cwiseProduct(beta);
+    law_.q = q_ - answer.motions->held * forces;
+    law_.load = load_ + springs_ * forces;
+  }
+  return law_;
+}
+
+void LawProblem::set(const FullMu &mu, const Vector &state, ReducedAnswer &answer) {
   answer.mu = mu;
   contact_->set(mu, state, answer);
   at_mu_.set(mu);
-  LawAtMu law{contact_->g(), {}, {}, laws_at(columns_, interfaces_, mu)};
+  law_ = {contact_->g(), {}, {}, laws_at(columns_, interfaces_, mu)};
   const MultiplierBasis &functions = model_.contact.law->basis;
-  if (functions.normal.size() > 0 || at_mu_.has_load()) law.b = contact_->b();
+  if (functions.normal.size() > 0) law_.b = contact_->b();
   if (model_.body.online_enriched)
-    at_mu_.restrict_to(enriched_subspace(multiplier_coefficients(functions).transpose() * law.b,
+    at_mu_.restrict_to(enriched_subspace(multiplier_coefficients(functions).transpose() * law_.b,
                                          model_.body.modes));
   if (at_mu_.has_load()) {
-    law.load = at_mu_.half_response(at_mu_.load());
-    law.q -= law.b * at_mu_.transposed_half_response(law.load);
+    law_.load = at_mu_.half_response(at_mu_.load());
+    law_.q -= contact_->times(at_mu_.transposed_half_response(law_.load));
   }
-  return law;
+  friction_.emplace(
+      [this](const std::vector<Index> &which) { return contact_->condensed_columns(which); },
+      law_.laws);
 }
 
-/// Of springs that are relaxed at beta only q and the load change with beta.
-LawAtMu LawProblem::relaxed(const FullMu &mu, const Vector &beta, ReducedAnswer &answer) {
-  if (!unrelaxed_ || unrelaxed_->answer.mu != mu) {
-    unrelaxed_.reset();
-    Unrelaxed now;
-    now.law = at(mu, now.answer);
-    now.answer.motions = free_motions_at(at_mu_, now.law.b, now.law.laws);
-    now.theta = spring_coefficients(model_, scene_, mu);
-    now.springs = at_mu_.half_response(model_.body.springs);
-    unrelaxed_ = std::move(now);
-  }
-  answer = unrelaxed_->answer;
-  LawAtMu law = unrelaxed_->law;
-  const Vector forces = unrelaxed_->theta.cwiseProduct(beta);
-  law.q -= answer.motions->held * forces;
-  law.load += unrelaxed_->springs * forces;
-  return law;
+void LawProblem::set_springs(ReducedAnswer &answer) {
+  const Matrix motions = at_mu_.free_motions();
+  answer.motions = free_motions_at(at_mu_, motions, contact_->times(motions), law_.laws);
+  theta_ = spring_coefficients(model_, scene_, answer.mu);
+  springs_ = at_mu_.half_response(model_.body.springs);
+  q_ = law_.q;
+  load_ = law_.load;
 }
 
 AtAllNodes LawProblem::at_all_nodes(const LawAtMu &law, const Vector &x) {
@@ -73,13 +79,13 @@ AtAllNodes LawProblem::at_all_nodes(const LawAtMu &law, const Vector &x) {
   return result;
 }
 
-void LawProblem::finish(const LawAtMu &law, ReducedAnswer &answer) const {
+void LawProblem::displace(ReducedAnswer &answer) const {
   for (const Index column : edge_)
     if (answer.lambda[column] != 0)
       throw failure("contact reaches the edge of the nodes that the model has multipliers at: " +
                     std::string(keeps_more));
   contact_->move(at_mu_, answer);
-  if (law.load.size() > 0) answer.u += at_mu_.transposed_half_response(law.load);
+  if (law_.load.size() > 0) answer.u += at_mu_.transposed_half_response(law_.load);
 }
 
 LawStarts::LawStarts(const ReducedModel &model, const Scene &scene, bool warm)

@@ -1,8 +1,8 @@
 #include "law_methods.hpp"
 
-#include "rbvi/model/free_bodies.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/model/free_bodies.hpp"
 
 #include <algorithm>
 
@@ -15,25 +15,22 @@ bool has_several_answers(const ReducedModel &model) {
 NodeLawSolver::NodeLawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
                              const QueryOptions &options, bool by_rule)
     : by_rule_(by_rule || rests_at_start(model, scene)),
-      looks_for_others_(options.looks_for_others || by_rule),
-      problem_(model, scene, contact), starts_(model, scene, options.warm) {}
+      looks_for_others_(options.looks_for_others || by_rule), problem_(model, scene, contact),
+      starts_(model, scene, options.warm) {}
 
 void NodeLawSolver::solve_at_nodes(const LawAtMu &law, ReducedAnswer &answer) {
   ReducedContact &contact = problem_.contact();
-  const auto columns = [&](const std::vector<Index> &which) {
-    return contact.condensed_columns(which);
-  };
   Vector start = answer.start.size() > 0 ? answer.start : starts_.at(answer.mu);
   for (Index i = 0; i < start.size(); ++i)
     if (start[i] > 0 && !contact.faces(i)) start[i] = 0;
   // Where springs of free bodies change, an answer is continued from the one before.
   const bool continues = answer.motions && answer.start.size() > 0;
-  FrictionAnswer found = friction_answer(columns, law.q, law.laws, start, by_rule_ && !continues);
+  FrictionSolver &friction = problem_.friction();
+  FrictionAnswer found = friction.answer(law.q, start, by_rule_ && !continues);
   if (!found.converged || !(found.residual <= largest_left))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: " + found.reason);
-  if (looks_for_others_ && !continues)
-    answer.to_other = distance_to_other_answer(columns, law.q, law.laws, found);
+  if (looks_for_others_ && !continues) answer.to_other = distance_to_other_answer(friction, found);
   if (found.has_others) answer.to_other = std::max(answer.to_other, least_distance);
   answer.energy = 0.5 * (found.x.dot(found.w - law.q) - law.load.squaredNorm());
   answer.residual = found.residual;
@@ -42,14 +39,16 @@ void NodeLawSolver::solve_at_nodes(const LawAtMu &law, ReducedAnswer &answer) {
   answer.start = std::move(found.start);
 }
 
-ReducedAnswer NodeLawSolver::solve(const FullMu &mu, const Relaxed &relaxed) {
-  ReducedAnswer answer;
-  const LawAtMu law = problem_.at(mu, answer, {}, relaxed.beta);
-  answer.start = relaxed.start;
-  solve_at_nodes(law, answer);
-  problem_.finish(law, answer);
-  starts_.keep(answer.start);
+ReducedAnswer NodeLawSolver::solve(const FullMu &mu, Relaxed relaxed) {
+  ReducedAnswer answer = std::move(relaxed.before);
+  answer.iterations = 0;
+  solve_at_nodes(problem_.at(mu, answer, {}, relaxed.beta), answer);
   return answer;
+}
+
+void NodeLawSolver::displace(ReducedAnswer &answer) {
+  problem_.displace(answer);
+  starts_.keep(answer.start);
 }
 
 std::unique_ptr<QueryMethod> law_solver(const ReducedModel &model, const Scene &scene,

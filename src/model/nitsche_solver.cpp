@@ -72,7 +72,7 @@ Vector ReducedNitsche::predicted(const Matrix &of_samples, const FullMu &all_par
                    parts_of_box(space, all_parameters));
 }
 
-ReducedAnswer ReducedNitsche::solve(const FullMu &all_parameters, const Relaxed &) {
+ReducedAnswer ReducedNitsche::solve(const FullMu &all_parameters, Relaxed) {
   System &system = *system_;
   const NitscheModel &nitsche = *model_.contact.nitsche;
   system.mu.clear(); // until its quadratic is there

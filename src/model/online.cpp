@@ -155,9 +155,10 @@ Vector OnlineSolver::with_imposed(Vector u, const FullMu &mu, const Matrix &poin
 void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vector &lambda,
                                         Outputs &outputs) const {
   if (scene_.outputs.empty()) return;
+  Vector columns; // once for all interfaces
   const auto of_interface = [&](std::size_t interface) {
     const InterfaceMesh &mesh = contact_.interfaces[interface]->mesh();
-    const Vector columns = model_.contact.trace * solution.u;
+    if (columns.size() == 0) columns = model_.contact.trace * solution.u;
     Vector u = Vector::Zero(std::ssize(mesh.dofs));
     for (Index i = 0; i < u.size(); ++i)
       if (const int column = mesh.dofs[i]; column >= 0) u[i] = columns[column];

@@ -17,6 +17,16 @@ Vector block_coefficients(const CondensedOperator &condensed, const Scene &scene
   return condensed.shape * grid_weights(scene, condensed.axes, mu);
 }
 
+/// Columns of a sum of m x m matrices, each of which is a column of `terms`.
+Matrix columns_of_sum(const Matrix &terms, const Vector &coefficients,
+                      const std::vector<Index> &which) {
+  const Index m = std::lround(std::sqrt(static_cast<double>(terms.rows())));
+  Matrix result(m, std::ssize(which));
+  for (Index k = 0; k < result.cols(); ++k)
+    result.col(k).noalias() = terms.middleRows(which[k] * m, m) * coefficients;
+  return result;
+}
+
 class SeparatedContact : public ReducedContact {
 public:
   SeparatedContact(const ReducedModel &model, const Scene &scene, const Contact &contact)
@@ -43,12 +53,7 @@ public:
   }
 
   Matrix condensed_columns(const std::vector<Index> &which) override {
-    const Index m = model_.contact.generators;
-    Matrix result(m, std::ssize(which));
-    for (Index k = 0; k < result.cols(); ++k)
-      result.col(k).noalias() =
-          model_.contact.law->condensed.terms.middleRows(which[k] * m, m) * coefficients_;
-    return result;
+    return columns_of_sum(model_.contact.law->condensed.terms, coefficients_, which);
   }
 
   void move(const BodyAtMu &body, ReducedAnswer &answer) const override {
@@ -79,6 +84,16 @@ public:
     return true;
   }
   Range body_of(Index dof) const override { return bodies_[dof]; }
+  const Vector &coefficients() const { return coefficients_; }
+  /// B of each term B^T, as columns.
+  Matrix condensed(const SparseMatrix &b) const {
+    Matrix result(b.rows() * b.rows(), of_.terms.cols());
+    for (Index k = 0; k < result.cols(); ++k) {
+      const Matrix moved = b * Eigen::Map<const Matrix>(of_.terms.col(k).data(), size(), size());
+      result.col(k) = (b * Matrix(moved.transpose())).reshaped();
+    }
+    return result;
+  }
 
 private:
   void make(const std::vector<Index> &dofs, Eigen::Ref<Matrix> columns) override {
@@ -121,7 +136,12 @@ bool EvaluatedContact::set_compliance(const FullMu &mu) {
 
 void EvaluatedContact::set(const FullMu &mu, const Vector &state, ReducedAnswer &answer) {
   assemble(contact_, mu, {state}, answer.contact);
-  b_ = known_columns(rows_ * answer.contact.b);
+  SparseMatrix b = known_columns(rows_ * answer.contact.b);
+  if (b.rows() != b_.rows() || (b - b_).norm() > 0)
+    terms_.resize(0, 0);
+  else if (terms_.size() == 0 && compliance_)
+    terms_ = compliance_->condensed(b);
+  b_ = std::move(b);
   g_ = rows_ * answer.contact.g;
   set_compliance(mu);
 }
@@ -146,6 +166,7 @@ SparseMatrix EvaluatedContact::known_columns(const SparseMatrix &b) const {
 }
 
 Matrix EvaluatedContact::condensed_columns(const std::vector<Index> &which) {
+  if (terms_.size() > 0) return columns_of_sum(terms_, compliance_->coefficients(), which);
   return rbvi::condensed_columns(*compliance_, b_, which);
 }
 

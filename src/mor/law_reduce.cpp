@@ -92,7 +92,7 @@ void add_starts(ReducedModel &model, const Problem &problem) {
   for (Index p = 0; p < starts.cols(); ++p) {
     const Vector mu = model.contact.law->starts_mu.col(p);
     ReducedAnswer unused;
-    const LawAtMu law = of_model.at(
+    const LawAtMu &law = of_model.at(
         expand(problem.scene().parameters, {mu.begin(), mu.end()}), unused,
         model.contact.law->states.size() > 0 ? Vector(model.contact.law->states.col(p)) : Vector());
     starts.col(p) = of_model.at_all_nodes(law, starts.col(p)).start;
@@ -129,7 +129,7 @@ Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sa
   for (std::size_t p = 0; p < samples.size(); ++p) {
     const FullMu all = expand(scene.parameters, samples[p].mu);
     ReducedAnswer unused;
-    const LawAtMu at_mu = of_model.at(all, unused);
+    const LawAtMu &at_mu = of_model.at(all, unused);
     CollocatedProblem reduced = collocated_problem(law.basis, at_mu, of_model.body());
     problems.push_back({std::move(reduced.h), std::move(reduced.q),
                         bounds_at(at_mu.laws.bound, nodes), coefficients.col(p).tail(tangential)});

@@ -34,9 +34,10 @@ MethodResult solve_active_set(FullBody &body, const Operators &op, const Vector 
         solve_lcp(columns, q, start.size() > 0 ? in_contact(op.laws, start) : std::vector<Index>()),
         result);
   } else {
-    FrictionAnswer found = friction_answer(columns, q, op.laws, start, options.by_rule);
+    FrictionSolver friction(columns, op.laws);
+    FrictionAnswer found = friction.answer(q, start, options.by_rule);
     if (options.looks_for_others && found.converged)
-      result.to_other = distance_to_other_answer(columns, q, op.laws, found);
+      result.to_other = distance_to_other_answer(friction, found);
     if (found.has_others) result.to_other = std::max(result.to_other, least_distance);
     result.start = std::move(found.start);
     take(std::move(found), result);

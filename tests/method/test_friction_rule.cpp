@@ -40,13 +40,18 @@ TEST(FrictionRule, SeesOthersByTheSignOfTheTangent) {
 TEST(FrictionRule, FindsOthersFromOtherStarts) {
   const OneNode p;
   const NodeLaws laws = uniform_laws(1, 2, p.coulomb);
-  for (const Vector &start : {Vector(), p.slipping, p.sticking})
-    EXPECT_GT(distance_to_other_answer(columns_of(p.h), p.q, laws, p.from(start)), 0.1);
+  std::set<Index> given;
+  FrictionSolver solver(once(p.h, given), laws);
+  for (const bool by_rule : {false, true})
+    for (const Vector &start : {Vector(), p.slipping, p.sticking}) {
+      const FrictionAnswer found = solver.answer(p.q, start, by_rule);
+      EXPECT_EQ(solver.by_rule(), by_rule);
+      EXPECT_GT(distance_to_other_answer(solver, found), 0.1);
+      EXPECT_FALSE(solver.another(start, by_rule).converged) << "it would be found again";
+    }
   // Pressed together harder there is one.
   const Vector pressed{{-1, 0.1}};
-  EXPECT_EQ(distance_to_other_answer(columns_of(p.h), pressed, laws,
-                                     solve_friction(columns_of(p.h), pressed, laws)),
-            0);
+  EXPECT_EQ(distance_to_other_answer(solver, solver.answer(pressed, {}, false)), 0);
   // A threshold is convex.
   const NodeLaws tresca = uniform_laws(1, 2, {0, 0.3, false});
   EXPECT_FALSE(bounds_follow_pressure(tresca));

@@ -196,6 +196,20 @@ TEST(Reductions, CollocationServesTwoBodies) {
   }
 }
 
+/// Where B stays the condensed operator is kept from the second query on.
+TEST(Reductions, LaterQueriesOfTwoBodiesAnswerAsFirstOnes) {
+  Reduced r(make_scene("patch"), "grid:3");
+  r.reduce(condensed_law());
+  EXPECT_TRUE(r.model.evaluates_contact());
+  OnlineSolver online(r.model);
+  for (const Mu &mu : parse_set(r.problem.scene().parameters, "random:4:1")) {
+    const ReducedAnswer later = online.solve(mu), first = OnlineSolver(r.model).solve(mu);
+    EXPECT_GT(first.lambda.norm(), 0.1);
+    EXPECT_LE((later.lambda - first.lambda).norm(), 1e-12 * first.lambda.norm());
+    EXPECT_LE((later.u - first.u).norm(), 1e-12 * first.u.norm());
+  }
+}
+
 TEST(Reductions, CollocationOfTwoBodiesReturnsItsTrainingSamples) {
   Reduced r(make_scene("two_disks", {{"arc_edges", "24"}}), "grid:9");
   ReduceOptions options = everything();

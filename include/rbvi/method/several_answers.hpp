@@ -5,6 +5,8 @@
 
 #include "rbvi/method/friction.hpp"
 
+#include <memory>
+
 namespace rbvi {
 
 /// Whether the bound of some node depends on its pressure: Coulomb's law, or a threshold in contact
@@ -28,14 +30,35 @@ FrictionAnswer friction_answer(const ColumnSource &columns, const Vector &q, con
                                const Vector &start, bool by_rule,
                                const FrictionOptions &options = {});
 
+/// Problems of friction.hpp one after another that differ in q alone: of H each column is asked for
+/// once.
+class FrictionSolver {
+public:
+  /// Throws as solve_friction where the laws make no sense.
+  FrictionSolver(ColumnSource columns, const NodeLaws &laws);
+  ~FrictionSolver();
+  FrictionSolver(const FrictionSolver &) = delete;
+  /// As friction_answer.
+  FrictionAnswer answer(const Vector &q, const Vector &start, bool by_rule,
+                        const FrictionOptions &options = {});
+  /// To the last q, from another start. In the plane active sets tell all that follow: this ends,
+  /// not converged, where it comes to some that were met on the way to an answer before.
+  FrictionAnswer another(const Vector &start, bool by_rule);
+  const NodeLaws &laws() const;
+  bool by_rule() const; ///< the last answer()
+
+private:
+  struct Parts;
+  const std::unique_ptr<Parts> parts_;
+};
+
 /// Largest difference of two answers over their largest entry; 0 up to least_distance, as of one.
 double distance_of_answers(const Vector &x, const Vector &other);
 
-/// The distance of found.x to the farthest other answer; 0: none was found. Looks from rest, by the
-/// rule, and from the contact of `found` (of all nodes where it has none) with all of it stuck, or
-/// slipping one way or the other.
-/// Where bounds do not follow the pressure nothing is asked.
-double distance_to_other_answer(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,
-                                const FrictionResult &found);
+/// The distance of found.x, the last answer() of a problem, to the farthest other answer; 0: none
+/// was found. Looks from rest, by the rule where `found` is not the answer by it, and from the
+/// contact of `found` (of all nodes where it has none) with all of it stuck, or slipping one way or
+/// the other. Where bounds do not follow the pressure nothing is asked.
+double distance_to_other_answer(FrictionSolver &solver, const FrictionResult &found);
 
 } // namespace rbvi

@@ -31,10 +31,11 @@ struct ReducedAnswer : Answer {
   std::optional<FreeMotions> motions{}; ///< of bodies that contact alone holds
 };
 
-/// What the springs of free bodies are relaxed at, and where a solve then starts from
-/// (Answer::start); empty: from what the samples predict.
+/// What the springs of free bodies are relaxed at, and the answer at the same mu with springs
+/// relaxed elsewhere, from which a solve starts; empty: from what the samples predict.
 struct Relaxed {
-  Vector beta{}, start{};
+  Vector beta{};
+  ReducedAnswer before{};
 };
 
 /// What is left of the conditions of a query that has an answer: ReducedAnswer::residual.
@@ -68,7 +69,9 @@ class QueryMethod {
 public:
   virtual ~QueryMethod() = default;
   /// `relaxed`: for models with free bodies (solve_balanced).
-  virtual ReducedAnswer solve(const FullMu &mu, const Relaxed &relaxed) = 0;
+  virtual ReducedAnswer solve(const FullMu &mu, Relaxed relaxed) = 0;
+  /// Sets the displacement of the last answer of solve(), where that leaves it.
+  virtual void displace(ReducedAnswer &) {}
 };
 
 } // namespace rbvi

@@ -23,7 +23,7 @@ public:
   /// Throws failure, saying what to try, if the reduced constraints contradict each other, if A_N
   /// is not positive definite, if the KKT residual exceeds 1e-8, or if a node that the dual basis
   /// takes to be in contact is pulled at by more than 1 % of the peak pressure.
-  ReducedAnswer solve(const FullMu &mu, const Relaxed &relaxed) override;
+  ReducedAnswer solve(const FullMu &mu, Relaxed relaxed) override;
 
 private:
   /// Sets qp_ to where a query starts.

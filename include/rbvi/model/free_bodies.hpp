@@ -8,8 +8,10 @@
 
 namespace rbvi {
 
-/// What holds the free motions at an answer. `b`: rows of multipliers x n; `laws`: of these rows.
-FreeMotions free_motions_at(const BodyAtMu &body, const Matrix &b, NodeLaws laws);
+/// What holds the free motions, n x k, at an answer. `held`: FreeMotions::held; `laws`: of its
+/// rows.
+FreeMotions free_motions_at(const BodyAtMu &body, const Matrix &motions, Matrix held,
+                            NodeLaws laws);
 
 /// Whether queries start from rest, by the rule of friction_answer: with Coulomb's friction forces
 /// may balance in several answers, and this is the one of the full model.

@@ -12,7 +12,7 @@ namespace rbvi {
 /// At one mu; m multipliers.
 struct LawAtMu {
   Vector q;    ///< m
-  Matrix b;    ///< m x n; where the law is one on fewer functions, or with a load
+  Matrix b;    ///< m x n; where the law is one on fewer functions
   Vector load; ///< half response to the load; empty without one
   NodeLaws laws;
 };
@@ -30,26 +30,21 @@ public:
   LawProblem(const LawProblem &) = delete;
 
   /// At mu, contact at a state where it follows one, springs of free bodies relaxed at beta; valid
-  /// until the next call. Sets mu, theta_b or contact of the answer,
-  /// and its free motions where there is a beta.
-  LawAtMu at(const FullMu &mu, ReducedAnswer &answer, const Vector &state = {},
-             const Vector &beta = {});
-  ReducedContact &contact() { return *contact_; } ///< of the last at()
+  /// until the next call. Sets mu, theta_b or contact of the answer, and its free motions where
+  /// there is a beta; of an answer at this mu that has them only q and the load change with beta.
+  const LawAtMu &at(const FullMu &mu, ReducedAnswer &answer, const Vector &state = {},
+                    const Vector &beta = {});
+  ReducedContact &contact() { return *contact_; }   ///< of the last at()
+  FrictionSolver &friction() { return *friction_; } ///< likewise
   const BodyAtMu &body() const { return at_mu_; }
   AtAllNodes at_all_nodes(const LawAtMu &law, const Vector &x);
   /// Sets the displacement of answer.lambda. Throws failure where contact leaves the nodes that the
   /// model has multipliers at.
-  void finish(const LawAtMu &law, ReducedAnswer &answer) const;
+  void displace(ReducedAnswer &answer) const;
 
 private:
-  /// At the mu of the last answer with free bodies, their springs relaxed at zero.
-  struct Unrelaxed {
-    LawAtMu law;
-    ReducedAnswer answer; ///< what at() sets of it, and what holds the motions
-    Vector theta;         ///< spring_coefficients
-    Matrix springs;       ///< half responses to them
-  };
-  LawAtMu relaxed(const FullMu &mu, const Vector &beta, ReducedAnswer &answer);
+  void set(const FullMu &mu, const Vector &state, ReducedAnswer &answer);
+  void set_springs(ReducedAnswer &answer);
 
   const ReducedModel &model_;
   const Scene &scene_;
@@ -59,7 +54,12 @@ private:
   const ReducedBody body_;
   BodyAtMu at_mu_;
   const std::unique_ptr<ReducedContact> contact_;
-  std::optional<Unrelaxed> unrelaxed_;
+  std::optional<FullMu> mu_; ///< of the next ones
+  LawAtMu law_;
+  std::optional<FrictionSolver> friction_;
+  // Of springs of free bodies: their coefficients, half responses to them, q and load without them.
+  Vector theta_, q_, load_;
+  Matrix springs_;
 };
 
 /// Where queries start: from what the training samples around mu predict (core/local_fit.hpp), or

@@ -28,7 +28,7 @@ public:
   /// Starts from what the training samples predict; where there are none, from u = 0. Throws
   /// failure, saying what to try, where Newton's method does not converge or the tangent is not
   /// positive definite.
-  ReducedAnswer solve(const FullMu &all_parameters, const Relaxed & = {}) override;
+  ReducedAnswer solve(const FullMu &all_parameters, Relaxed = {}) override;
 
   /// What each point adds to the residual of the last answer, n x points, ...
   Matrix point_residuals() const;

@@ -17,6 +17,8 @@ public:
   /// At mu, and at a state where contact follows one. Sets theta_b or contact of the answer.
   virtual void set(const FullMu &mu, const Vector &state, ReducedAnswer &answer) = 0;
   virtual Matrix b() const = 0; ///< m x n, on the primal basis
+  /// B u of any number of displacements.
+  virtual Matrix times(const Matrix &u) const { return b() * u; }
   /// H(:, which), m x which.size().
   virtual Matrix condensed_columns(const std::vector<Index> &which) = 0;
   /// Whether this multiplier faces a partner.
@@ -38,6 +40,7 @@ public:
   ~EvaluatedContact() override;
   void set(const FullMu &mu, const Vector &state, ReducedAnswer &answer) override;
   Matrix b() const override { return b_ * trace_; }
+  Matrix times(const Matrix &u) const override { return b_ * Matrix(trace_ * u); }
   Matrix condensed_columns(const std::vector<Index> &which) override;
   bool faces(Index row) const override { return b_.row(row).norm() > 0; }
   void move(const BodyAtMu &body, ReducedAnswer &answer) const override;
@@ -63,6 +66,7 @@ private:
   Matrix unit_loads_;      ///< of a unit force at each of these dofs: ReducedBody::prepared
   std::unique_ptr<OfModel> compliance_; ///< null: the model has none
   SparseMatrix b_;                      ///< m x these dofs
+  Matrix terms_; ///< of H, as those of C; empty: B is another one than at the last mu
 };
 
 /// What the model has. All must outlive it.
