@@ -4,7 +4,6 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/vectors.hpp"
-#include "rbvi/solve/whole.hpp"
 
 #include <algorithm>
 #include <cmath>
