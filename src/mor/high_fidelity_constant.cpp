@@ -1,196 +1,112 @@
 #include "rbvi/mor/high_fidelity_constant.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/mor/operator_entries.hpp"
-#include "rbvi/solve/whole.hpp"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <string>
 
 namespace rbvi {
 
 namespace {
 
-/// A symmetric operator y = A x; returns PETSc's error code.
-using Operator = std::function<PetscErrorCode(const Vector &x, Vector &y)>;
+/// [V B^T; B 0], with the zeros of its diagonal, and [0 0; 0 W].
+struct SaddlePencil {
+  Handle<Mat> k, m;
+};
 
-PetscErrorCode apply(Mat shell, Vec x, Vec y) {
-  PetscFunctionBeginUser;
-  void *context = nullptr;
-  PetscCall(MatShellGetContext(shell, &context));
-  PetscInt size = 0;
-  const PetscScalar *from = nullptr;
-  PetscScalar *to = nullptr;
-  PetscCall(VecGetLocalSize(x, &size));
-  PetscCall(VecGetArrayRead(x, &from));
-  const Vector before = Eigen::Map<const Vector>(from, size);
-  PetscCall(VecRestoreArrayRead(x, &from));
-  Vector after(size);
-  PetscCall((*static_cast<const Operator *>(context))(before, after));
-  PetscCall(VecGetArrayWrite(y, &to));
-  Eigen::Map<Vector>(to, size) = after;
-  PetscCall(VecRestoreArrayWrite(y, &to));
-  PetscFunctionReturn(0);
+SaddlePencil saddle_pencil(MPI_Comm comm, Mat v, Mat b, Mat b_transposed, Mat w) {
+  Handle<Mat> zeros, nested_k, nested_m;
+  RBVI_CALL(MatDuplicate(w, MAT_DO_NOT_COPY_VALUES, zeros.put()));
+  const std::array<Mat, 4> of_k{v, b_transposed, b, zeros.get()},
+      of_m{nullptr, nullptr, nullptr, w};
+  std::array<IS, 2> parts{};
+  RBVI_CALL(MatCreateNest(comm, 2, nullptr, 2, nullptr, of_k.data(), nested_k.put()));
+  RBVI_CALL(MatNestGetISs(nested_k.get(), parts.data(), nullptr));
+  RBVI_CALL(MatCreateNest(comm, 2, parts.data(), 2, parts.data(), of_m.data(), nested_m.put()));
+  SaddlePencil pencil;
+  RBVI_CALL(MatConvert(nested_k.get(), MATAIJ, MAT_INITIAL_MATRIX, pencil.k.put()));
+  RBVI_CALL(MatConvert(nested_m.get(), MATAIJ, MAT_INITIAL_MATRIX, pencil.m.put()));
+  RBVI_CALL(MatSetOption(pencil.k.get(), MAT_SYMMETRIC, PETSC_TRUE));
+  return pencil;
 }
 
-/// By SLEPc's EPS, prefix infsup_.
-double largest_eigenvalue(Index rows, Operator a, const std::string &of) {
-  const auto size = static_cast<PetscInt>(rows);
-  Handle<Mat> shell;
-  RBVI_CALL(MatCreateShell(PETSC_COMM_SELF, size, size, size, size, &a, shell.put()));
-  RBVI_CALL(MatShellSetOperation(shell.get(), MATOP_MULT, reinterpret_cast<void (*)()>(apply)));
-  const Handle<EPS> eps = make_infsup_eps(size);
-  RBVI_CALL(EPSSetOperators(eps.get(), shell.get(), nullptr));
-  RBVI_CALL(EPSSolve(eps.get()));
-  PetscInt converged = 0;
-  RBVI_CALL(EPSGetConverged(eps.get(), &converged));
-  double value = 0;
-  if (converged > 0) RBVI_CALL(EPSGetEigenvalue(eps.get(), 0, &value, nullptr));
-  if (!(value > 0))
-    throw failure("the iteration for " + of +
-                  " did not converge: raise -infsup_eps_max_it or "
-                  "-infsup_eps_tol");
-  return value;
-}
-
-/// W = R R^T, R = P^T L.
-using Root = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>>;
-
-void factorise(const SparseMatrix &w_product, Root &root) {
-  root.compute(w_product);
-  if (root.info() != Eigen::Success) throw failure("the W product is not positive definite");
-}
-
-/// A sequential sparse matrix whose entries visit(add) adds, add(row, column, value), of at most
-/// `longest` entries a row.
-template <class Visit>
-Handle<Mat> assembled(PetscInt size, const std::vector<PetscInt> &longest, const Visit &visit) {
-  Handle<Mat> matrix;
-  RBVI_CALL(MatCreateSeqAIJ(PETSC_COMM_SELF, size, size, 0, longest.data(), matrix.put()));
-  visit([&](PetscInt row, PetscInt column, double value) {
-    RBVI_CALL(MatSetValue(matrix.get(), row, column, value, ADD_VALUES));
-  });
-  RBVI_CALL(MatAssemblyBegin(matrix.get(), MAT_FINAL_ASSEMBLY));
-  RBVI_CALL(MatAssemblyEnd(matrix.get(), MAT_FINAL_ASSEMBLY));
-  RBVI_CALL(MatSetOption(matrix.get(), MAT_SYMMETRIC, PETSC_TRUE));
-  return matrix;
-}
-
-/// [V B^T; B 0], with the zeros of its diagonal.
-Handle<Mat> saddle_point(Mat v, const SparseMatrix &b, const std::vector<PetscInt> &dofs) {
-  PetscInt fields = 0;
-  RBVI_CALL(MatGetSize(v, &fields, nullptr));
-  const auto size = static_cast<PetscInt>(fields + b.rows());
-  std::vector<PetscInt> longest(size, 1);
-  const auto each_of_b = [&](const auto &visit) {
-    for (Index i = 0; i < b.rows(); ++i)
-      for (SparseMatrix::InnerIterator entry(b, i); entry; ++entry)
-        visit(static_cast<PetscInt>(fields + i), dofs[entry.col()], entry.value());
-  };
-  visit_entries(v, [&](PetscInt row, PetscInt, double) { ++longest[row]; });
-  each_of_b([&](PetscInt row, PetscInt column, double) {
-    ++longest[row];
-    ++longest[column];
-  });
-  return assembled(size, longest, [&](const auto &add) {
-    visit_entries(v, add);
-    each_of_b([&](PetscInt row, PetscInt column, double value) {
-      add(row, column, value);
-      add(column, row, value);
-    });
-    for (PetscInt row = fields; row < size; ++row)
-      add(row, row, 0);
-  });
-}
-
-/// An indefinite matrix, by MUMPS, with room for the pivots that the zeros of its diagonal delay.
-Handle<KSP> factorised(Mat matrix) {
+/// Inside ST symmetric factors by MUMPS, with room for the pivots that zeros of a diagonal delay.
+void factorise(EPS eps, Mat matrix) {
   constexpr PetscInt more_room = 14, percent = 500;
-  Handle<KSP> ksp;
+  ST st = nullptr;
+  KSP ksp = nullptr;
   PC pc = nullptr;
-  RBVI_CALL(KSPCreate(PETSC_COMM_SELF, ksp.put()));
-  RBVI_CALL(KSPSetOperators(ksp.get(), matrix, matrix));
-  RBVI_CALL(KSPSetType(ksp.get(), KSPPREONLY));
-  RBVI_CALL(KSPGetPC(ksp.get(), &pc));
+  Mat factor = nullptr;
+  RBVI_CALL(EPSGetST(eps, &st));
+  RBVI_CALL(STGetKSP(st, &ksp));
+  RBVI_CALL(KSPSetType(ksp, KSPPREONLY));
+  RBVI_CALL(KSPSetOperators(ksp, matrix, matrix));
+  RBVI_CALL(KSPGetPC(ksp, &pc));
   RBVI_CALL(PCSetType(pc, PCCHOLESKY));
   RBVI_CALL(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  Mat factor = nullptr;
   RBVI_CALL(PCFactorSetUpMatSolverType(pc));
   RBVI_CALL(PCFactorGetMatrix(pc, &factor));
   RBVI_CALL(MatMumpsSetIcntl(factor, more_room, percent));
-  RBVI_CALL(KSPSetErrorIfNotConverged(ksp.get(), PETSC_TRUE));
-  RBVI_CALL(KSPSetUp(ksp.get()));
-  return ksp;
+}
+
+/// The size of the eigenvalue of a x = lambda m x that `eps` finds first.
+double eigenvalue(EPS eps, Mat a, Mat m, const std::string &of) {
+  RBVI_CALL(EPSSetOperators(eps, a, m));
+  RBVI_CALL(EPSSolve(eps));
+  PetscInt converged = 0;
+  double value = 0;
+  RBVI_CALL(EPSGetConverged(eps, &converged));
+  if (converged > 0) RBVI_CALL(EPSGetEigenvalue(eps, 0, &value, nullptr));
+  if (!(value < 0))
+    throw failure("the iteration for " + of +
+                  " did not converge: raise -infsup_eps_max_it or -infsup_eps_tol");
+  return -value;
 }
 
 } // namespace
 
-Handle<EPS> make_infsup_eps(PetscInt size) {
+Handle<EPS> make_infsup_eps(MPI_Comm comm, PetscInt multipliers) {
   constexpr double tolerance = 1e-12; // relative, of 1 / beta^2 and c^2
   constexpr PetscInt most_restarts = 200;
   Handle<EPS> eps;
-  RBVI_CALL(EPSCreate(PETSC_COMM_SELF, eps.put()));
+  RBVI_CALL(EPSCreate(comm, eps.put()));
   RBVI_CALL(EPSSetOptionsPrefix(eps.get(), "infsup_"));
-  RBVI_CALL(EPSSetProblemType(eps.get(), EPS_HEP));
+  RBVI_CALL(EPSSetProblemType(eps.get(), EPS_GHEP));
   RBVI_CALL(EPSSetType(eps.get(), EPSKRYLOVSCHUR));
   RBVI_CALL(EPSSetTolerances(eps.get(), tolerance, most_restarts));
   // The values of two bodies cluster: 16 vectors, the default, do not suffice.
-  RBVI_CALL(EPSSetDimensions(eps.get(), 1, std::min<PetscInt>(size, 64), PETSC_DEFAULT));
+  RBVI_CALL(EPSSetDimensions(eps.get(), 1, std::min<PetscInt>(multipliers, 64), PETSC_DEFAULT));
   RBVI_CALL(EPSSetFromOptions(eps.get()));
-  RBVI_CALL(EPSSetWhichEigenpairs(eps.get(), EPS_LARGEST_REAL));
   return eps;
 }
 
-SparseInfSup::SparseInfSup(Mat product, const Trace &trace)
-    : product_(whole_matrix(product, trace.comm)), dofs_(whole_rows(product, trace)) {}
-
-double SparseInfSup::constant(const SparseMatrix &b_contact, const SparseMatrix &w_product) const {
-  if (b_contact.rows() == 0) return std::numeric_limits<double>::infinity();
-  if (b_contact.rows() > b_contact.cols()) return 0;
-  Root w;
-  factorise(w_product, w);
-  const Handle<Mat> matrix = saddle_point(product_.get(), b_contact, dofs_);
-  const Handle<KSP> ksp = factorised(matrix.get());
-  Handle<Vec> right, solution;
-  PetscInt fields = 0; // rows of V, in front
-  RBVI_CALL(MatGetSize(product_.get(), &fields, nullptr));
-  RBVI_CALL(MatCreateVecs(matrix.get(), right.put(), solution.put()));
-  const Operator inverse = [&](const Vector &x, Vector &y) {
-    PetscFunctionBeginUser;
-    const PetscScalar *from = nullptr;
-    PetscScalar *to = nullptr;
-    PetscCall(VecZeroEntries(right.get()));
-    PetscCall(VecGetArray(right.get(), &to));
-    Eigen::Map<Vector>(to + fields, x.size()) = w.permutationPinv() * (w.matrixL() * x).eval();
-    PetscCall(VecRestoreArray(right.get(), &to));
-    PetscCall(KSPSolve(ksp.get(), right.get(), solution.get()));
-    PetscCall(VecGetArrayRead(solution.get(), &from));
-    y = w.permutationP() * Eigen::Map<const Vector>(from + fields, x.size());
-    y = -(w.matrixU() * y).eval();
-    PetscCall(VecRestoreArrayRead(solution.get(), &from));
-    PetscFunctionReturn(0);
-  };
-  return 1 / std::sqrt(largest_eigenvalue(b_contact.rows(), inverse, "beta_HF"));
-}
-
-double largest_stretch(const Matrix &riesz_factor, const SparseMatrix &b_contact,
-                       const SparseMatrix &w_product) {
-  if (b_contact.rows() == 0) return 0;
-  Root w;
-  factorise(w_product, w);
-  const auto lower = riesz_factor.triangularView<Eigen::Lower>();
-  const Operator square = [&](const Vector &x, Vector &y) {
-    const Vector eta = w.permutationPinv() * w.matrixU().solve(x);
-    const Vector representer = lower.transpose() * (b_contact.transpose() * eta).eval();
-    y = w.permutationP() * (b_contact * (lower * representer).eval());
-    w.matrixL().solveInPlace(y);
-    return PetscErrorCode{0};
-  };
-  return std::sqrt(largest_eigenvalue(b_contact.rows(), square, "c_HF"));
+PairConstants iterated_constants(KSP v, Mat b, Mat w) {
+  const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(v));
+  PetscInt multipliers = 0;
+  Mat product = nullptr;
+  Handle<Mat> transposed, schur;
+  RBVI_CALL(MatGetSize(b, &multipliers, nullptr));
+  RBVI_CALL(KSPGetOperators(v, &product, nullptr));
+  RBVI_CALL(MatTranspose(b, MAT_INITIAL_MATRIX, transposed.put()));
+  const SaddlePencil pencil = saddle_pencil(comm, product, b, transposed.get(), w);
+  const Handle<EPS> smallest = make_infsup_eps(comm, multipliers),
+                    largest = make_infsup_eps(comm, multipliers);
+  ST st = nullptr;
+  RBVI_CALL(EPSGetST(smallest.get(), &st));
+  RBVI_CALL(STSetType(st, STSINVERT));
+  RBVI_CALL(EPSSetWhichEigenpairs(smallest.get(), EPS_TARGET_MAGNITUDE));
+  RBVI_CALL(EPSSetTarget(smallest.get(), 0));
+  factorise(smallest.get(), pencil.k.get());
+  // PETSc's Schur complement has the sign of lambda above.
+  RBVI_CALL(MatCreateSchurComplement(product, product, transposed.get(), b, nullptr, schur.put()));
+  RBVI_CALL(MatSchurComplementSetKSP(schur.get(), v));
+  RBVI_CALL(KSPSetErrorIfNotConverged(v, PETSC_TRUE));
+  RBVI_CALL(EPSSetWhichEigenpairs(largest.get(), EPS_SMALLEST_REAL));
+  factorise(largest.get(), w);
+  return {std::sqrt(eigenvalue(smallest.get(), pencil.k.get(), pencil.m.get(), "beta_HF")),
+          std::sqrt(eigenvalue(largest.get(), schur.get(), w, "c_HF"))};
 }
 
 } // namespace rbvi

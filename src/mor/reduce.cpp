@@ -130,9 +130,8 @@ void add_supremizers(Problem &problem, const std::vector<ContactPoint> &training
   PgaOptions pga = options.pga;
   if (will_run(stages, stage::infsup_tolerance)) {
     const Stage stage(stages, stage::infsup_tolerance);
-    const RieszSpace whole =
-        make_riesz_space(energy ? stiffness.get() : problem.v_product(), problem.trace());
-    pga.tolerance = infsup_tolerance(problem.comm(), problem, whole, training);
+    pga.tolerance =
+        infsup_tolerance(problem, energy ? stiffness.get() : problem.v_product(), training);
     bases.infsup_tolerance = pga.tolerance;
   }
   const Stage stage(stages, stage::pga);

@@ -78,9 +78,15 @@ Matrix orthonormal_dual_basis(const Matrix &generators, const SparseMatrix &w_pr
 
 Matrix supremizer_coordinates(const RieszSpace &space, const SparseMatrix &b_contact,
                               const Matrix &x) {
-  if (space.loads.size() > 0) throw failure("supremizers of other multipliers than the loads");
+  constexpr double round_off = 1e-9;
   Matrix forces = b_contact.transpose() * x;
   if (!space.dofs.empty()) forces = forces(space.dofs, Eigen::all).eval();
+  if (space.loads.size() > 0) {
+    const double scale = forces.cwiseProduct(space.loads).sum() / space.loads.squaredNorm();
+    if (!((forces - scale * space.loads).norm() <= round_off * forces.norm()))
+      throw failure("supremizers of other multipliers than the loads");
+    return scale * space.factor.transpose();
+  }
   return space.factor.transpose().triangularView<Eigen::Upper>() * forces;
 }
 
@@ -112,14 +118,6 @@ void add_rows(Matrix &factor, const Matrix &rows) {
 }
 
 } // namespace
-
-double high_fidelity_constant(const RieszSpace &space, const SparseMatrix &b_contact,
-                              const SparseMatrix &w_product) {
-  const Matrix lower = cholesky(Matrix(w_product), "the W product");
-  Matrix x = Matrix::Identity(lower.rows(), lower.cols());
-  solve_lower_transposed(lower, x);
-  return smallest_stretch(supremizer_coordinates(space, b_contact, x));
-}
 
 InfSup infsup_constants(const RieszSpace &space, const SparseMatrix &b_contact, const Matrix &modes,
                         const Matrix &enriched, const Matrix &x) {

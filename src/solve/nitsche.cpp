@@ -12,7 +12,8 @@ namespace rbvi {
 namespace {
 
 constexpr double bound_accuracy = 1e-12; ///< change of u by new bounds of friction, relative
-constexpr double resting = 0.9;          ///< of the last change: from there on it is round-off
+constexpr double round_off = 1e-9;       ///< of that change: below it it may stagnate
+constexpr double stagnant = 0.9;         ///< of the last change
 constexpr double vanishing = 1e-9;       ///< of the start: below it terms count as zero
 constexpr int most_outer_iterations = 60;
 
@@ -72,7 +73,7 @@ void NitscheSolver::run(bool nested, Vec u, NitscheSolution &result) {
     system.set_bounds(u);
     RBVI_CALL(VecAXPY(before.get(), -1, u));
     const double size = norm(u), change = size == 0 ? 0 : norm(before.get()) / size;
-    const bool rests = change <= NitscheSystem::round_off && change > resting * last_change;
+    const bool rests = change <= round_off && change > stagnant * last_change;
     // The first bounds are those of the start, not of u.
     const bool settled = result.outer_iterations > 1 && (change <= bound_accuracy || rests);
     if (settled && system.tolerance <= accuracy) return;

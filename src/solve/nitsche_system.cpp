@@ -4,7 +4,6 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/vectors.hpp"
-#include "rbvi/solve/whole.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +14,8 @@ namespace rbvi {
 namespace {
 
 constexpr double at_bound = 1e-13; ///< closer to its bound an unknown is held by it
-constexpr int patience = 4;        ///< steps without a new smallest residual, the bounds moving
+constexpr double resting = 1e-11;  ///< of a step, relative: round-off, where nu is nearly 0.5, too
+constexpr double slowly_resting = 1e-12; ///< where bounds follow the steps, which fall linearly
 constexpr double near = 1e-3; ///< residual from which on the linear systems are solved to the end
 constexpr int most_iterations = 15;
 constexpr double edge_depth = 0.5;  ///< at the edge of contact, over the largest: Hertz's
@@ -177,14 +177,16 @@ void NitscheSystem::before_step() {
   KSP ksp = nullptr;
   Vec u = nullptr;
   PetscInt iterations = 0;
+  PetscReal size = 0;
   RBVI_CALL(SNESGetKSP(snes.get(), &ksp));
   RBVI_CALL(SNESGetSolution(snes.get(), &u));
+  RBVI_CALL(SNESGetFunctionNorm(snes.get(), &size));
   RBVI_CALL(KSPGetIterationNumber(ksp, &iterations));
   factorised = factorisations == 0 || iterations > dear_iterations;
   if (factorised) ++factorisations;
-  RBVI_CALL(KSPSetTolerances(ksp,
-                             relative > near ? linear_tolerance : std::min(linear_tolerance, 1e-8),
-                             PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
+  RBVI_CALL(KSPSetTolerances(
+      ksp, size > near * scale ? linear_tolerance : std::min(linear_tolerance, 1e-8), PETSC_DEFAULT,
+      PETSC_DEFAULT, PETSC_DEFAULT));
   RBVI_CALL(SNESSetLagPreconditioner(snes.get(), factorised ? -2 : -1)); // now, or not at all
   if (solver.watch) solver.watch(on_layer(u), bounds);
 }
@@ -225,23 +227,6 @@ void NitscheSystem::search(SNESLineSearch line) {
   RBVI_CALL(SNESLineSearchComputeNorms(line));
 }
 
-SNESConvergedReason NitscheSystem::judge(PetscInt step, double r) {
-  if (!std::isfinite(r)) return SNES_DIVERGED_FNORM_NAN;
-  const double before = relative;
-  relative = scale == 0 ? 0 : r / scale;
-  if (relative <= tolerance) return SNES_CONVERGED_FNORM_RELATIVE;
-  if (r <= small_residual) return SNES_CONVERGED_FNORM_ABS;
-  if (step == 0 || relative < best) {
-    best = relative;
-    best_step = step;
-  }
-  // Where bounds follow the steps, residuals fall slowly, and not at each step.
-  const bool stagnant =
-      bounds_move() && options.single_loop ? step - best_step >= patience : relative > 0.1 * before;
-  if (step > 0 && relative <= round_off && stagnant) return SNES_CONVERGED_SNORM_RELATIVE;
-  return SNES_CONVERGED_ITERATING;
-}
-
 double NitscheSystem::relative_residual(Vec u) {
   residual(u, force.get());
   if (frames) { // u < upper: nothing may push; u = upper: only outwards (r < 0)
@@ -263,6 +248,9 @@ double NitscheSystem::relative_residual(Vec u) {
 
 int NitscheSystem::newton(Vec u, std::string &reason) {
   failed = nullptr;
+  residual(u, force.get()); // sets the scale
+  RBVI_CALL(SNESSetTolerances(snes.get(), std::max(small_residual, tolerance * scale), 0,
+                              PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   const PetscErrorCode code = SNESSolve(snes.get(), nullptr, u);
   if (failed) std::rethrow_exception(failed);
   SNESConvergedReason why = SNES_CONVERGED_ITERATING;
@@ -300,7 +288,9 @@ void NitscheSystem::make_snes(const Operators &op) {
     if (given == PETSC_FALSE) RBVI_CALL(PetscOptionsSetValue(nullptr, name.c_str(), "1e-14"));
   }
   set_callbacks();
-  RBVI_CALL(SNESSetTolerances(snes.get(), small_residual, accuracy, 0, 100, 100000));
+  RBVI_CALL(SNESSetTolerances(snes.get(), small_residual, accuracy,
+                              options.single_loop ? slowly_resting : resting, 100, 100000));
+  RBVI_CALL(SNESSetDivergenceTolerance(snes.get(), -1)); // it starts close to its end
   set_linear_solver();
   RBVI_CALL(SNESGetTolerances(snes.get(), &small_residual, &accuracy, nullptr, nullptr, nullptr));
   const bool extended = std::string(type).starts_with("vi");
@@ -334,14 +324,6 @@ void NitscheSystem::set_callbacks() {
     auto &self = system_of(context);
     return guarded(self.failed, [&] { self.before_step(); });
   }));
-  RBVI_CALL(SNESSetConvergenceTest(
-      snes.get(),
-      [](SNES, PetscInt step, PetscReal, PetscReal, PetscReal r, SNESConvergedReason *reason,
-         void *context) -> PetscErrorCode {
-        *reason = system_of(context).judge(step, r);
-        return 0;
-      },
-      this, nullptr));
   if (!options.single_loop && !layer.follows_state())
     RBVI_CALL(SNESSetObjective(
         snes.get(),

@@ -10,8 +10,6 @@
 namespace rbvi {
 
 struct NitscheSystem {
-  static constexpr double round_off = 1e-9; ///< below it the residual may stagnate
-
   NitscheSystem(const NitscheSolver &solver, const Problem &problem, const NitscheOptions &options);
 
   const NitscheSolver &solver;
@@ -35,10 +33,8 @@ struct NitscheSystem {
 
   // While SNES works.
   double tolerance = 1e-12;
-  double scale = 0, relative = 1; ///< of the last residual: its terms' norms, its part of them
-  double smallest_scale = 0;      ///< where the answer is zero all its terms are round-off
-  double best = 1;                ///< the smallest part so far, and its step
-  PetscInt best_step = 0;
+  double scale = 0;          ///< of the last residual: the norms of its terms
+  double smallest_scale = 0; ///< where the answer is zero all its terms are round-off
   int factorisations = 0;
   bool factorised = false; ///< in this step
   std::exception_ptr failed;
@@ -69,7 +65,6 @@ private:
   void before_step();
   void check_linear_solve() const;
   void search(SNESLineSearch line);
-  SNESConvergedReason judge(PetscInt step, double r);
 };
 
 } // namespace rbvi

@@ -4,7 +4,6 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/node_memory.hpp"
 #include "rbvi/solve/linear.hpp"
-#include "rbvi/solve/whole.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,8 +27,7 @@ Share my_share(MPI_Comm comm, Index size) {
   return share_of(rank_of(comm), ranks_of(comm), size);
 }
 
-} // namespace
-
+/// All of `a`, sequential; on one rank `a` itself. Collective.
 Handle<Mat> whole_matrix(Mat a, MPI_Comm comm) {
   const int ranks = ranks_of(comm);
   Handle<Mat> whole;
@@ -41,11 +39,7 @@ Handle<Mat> whole_matrix(Mat a, MPI_Comm comm) {
   return whole;
 }
 
-std::vector<PetscInt> whole_rows(Mat a, const Trace &trace) {
-  PetscInt first = 0;
-  RBVI_CALL(MatGetOwnershipRange(a, &first, nullptr));
-  return global_rows(trace, first);
-}
+} // namespace
 
 double plane_solve_bytes(double dofs) {
   // Nested dissection gives a factor of about 31 n log2 n entries. All that a process held beyond
@@ -79,7 +73,7 @@ ResponseSolver::ResponseSolver(Mat a, const Trace &trace, const char *prefix, Fa
     a_ = Handle<Mat>(a);
   } else {
     a_ = whole_matrix(a, comm_);
-    rows_ = whole_rows(a, trace);
+    rows_ = global_rows(trace, first_rows[rank_of(comm_)]);
   }
   RBVI_CALL(MatSetOption(a_.get(), MAT_SPD, PETSC_TRUE));
   ksp_ = make_direct_solver(PetscObjectComm(reinterpret_cast<PetscObject>(a_.get())), prefix);

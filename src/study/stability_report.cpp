@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 
 namespace rbvi {
 
@@ -32,37 +31,40 @@ LinearBasis basis_of(Problem &problem, const Matrix &natural_columns) {
 StabilityCheck make_stability_check(Problem &problem, const ReducedModel &model) {
   StabilityCheck check;
   check.modes = model.body.modes;
-  check.space = make_riesz_space(problem.v_product(), problem.trace());
-  check.coordinates = mode_coordinates(check.space, basis_of(problem, model.fields.basis));
   check.dual = orthonormal_dual_basis(
       model.contact.law ? multiplier_functions(model.contact.dual_basis, model.contact.law->basis)
                         : model.contact.dual_basis,
       problem.w_product());
+  Operators op;
+  const bool few_loads = model.contact.b.size() == 1 && iterates_constants(problem);
+  if (few_loads) problem.assemble_contact(box_centre(model.scene.parameters), op);
+  check.space = make_riesz_space(problem.v_product(), problem.trace(), {},
+                                 few_loads ? Matrix(op.b.transpose() * check.dual) : Matrix());
+  check.coordinates = mode_coordinates(check.space, basis_of(problem, model.fields.basis));
   return check;
 }
 
 std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
                                 const std::vector<ContactPoint> &set, bool b_is_scaled) {
-  constexpr Index count = 5;
-  Matrix values = Matrix::Zero(count, std::ssize(set));
   const Matrix modes = check.coordinates.leftCols(check.modes);
-  std::optional<PairConstants> per_b; // over |b|, where b is scaled
-  const std::optional<SparseInfSup> sparse = sparse_infsup(problem);
+  const std::vector<PairConstants> pairs =
+      high_fidelity_pairs(problem, problem.v_product(), check.space,
+                          {set.begin(), b_is_scaled ? set.begin() + 1 : set.end()});
+  Matrix values = Matrix::Zero(4, std::ssize(set)); // the last is |b|
   take_turns(comm, set.size(), [&](std::size_t p) {
     Operators op;
     problem.assemble_contact(set[p].mu, op, set[p].state);
     const InfSup c = infsup_constants(check.space, op.b, modes, check.coordinates, check.dual);
-    const double size = op.b.norm();
-    if (!b_is_scaled || !per_b) {
-      const PairConstants pair = high_fidelity_pair(problem, check.space, op, sparse);
-      per_b = {pair.beta / size, pair.c / size};
-    }
-    values.col(p) << per_b->beta * size, c.dec, c.on, c.off, per_b->c * size;
+    values.col(p) << c.dec, c.on, c.off, op.b.norm();
   });
   over_ranks(comm, MPI_SUM, values);
   std::vector<InfSup> result;
-  for (const auto &at : values.colwise())
-    result.push_back({at[0], at[1], at[2], at[3], at[4]});
+  for (std::size_t p = 0; p < set.size(); ++p) {
+    const PairConstants &pair = pairs[b_is_scaled ? 0 : p];
+    const auto at = values.col(p);
+    const double scale = b_is_scaled ? at[3] / values(3, 0) : 1;
+    result.push_back({scale * pair.beta, at[0], at[1], at[2], scale * pair.c});
+  }
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include "rbvi/par/small_svd.hpp"
 
 #include <algorithm>
+#include <set>
 
 namespace rbvi {
 
@@ -49,8 +50,11 @@ std::string without_constants(const ToolOptions &options) {
 std::string why_not(const std::string &name, const ToolOptions &options, EigenUse use) {
   const bool of_greedy = name.starts_with("pga_");
   if (of_greedy && use != EigenUse::supremizers) return "supremizers are made by offline";
-  if (!of_greedy && use != EigenUse::constants) return "inf-sup constants are computed by verify";
-  return of_greedy ? without_supremizers(options) : without_constants(options);
+  const bool of_tolerance = use == EigenUse::supremizers && options.reduce.infsup_tolerance &&
+                            options.reduce.enrichment == Enrichment::offline;
+  if (!of_greedy && !of_tolerance && use != EigenUse::constants)
+    return "inf-sup constants are computed by verify and, with -pga_tolerance infsup, by offline";
+  return of_greedy || of_tolerance ? without_supremizers(options) : without_constants(options);
 }
 
 } // namespace
@@ -61,7 +65,7 @@ const std::vector<std::string> &eigen_prefixes() {
 }
 
 void check_eigen_options(const ToolOptions &options, EigenUse use) {
-  bool asked = false;
+  std::set<std::string> asked; // prefixes
   for (const std::string &name : unread_names(eigen_prefixes())) {
     if (is_ineffective(name))
       throw bad_input(
@@ -69,24 +73,24 @@ void check_eigen_options(const ToolOptions &options, EigenUse use) {
           " has no effect: all values of a small matrix are computed, the smallest of a large one");
     const std::string reason = why_not(name, options, use);
     if (reason.empty())
-      asked = true;
+      asked.insert(name.starts_with("pga_") ? "pga_" : "infsup_");
     else if (contains(options.command_line, name))
       throw bad_input("nothing of this run asks for the option -" + name + ": " + reason);
   }
-  if (!asked) return;
-  const char *prefix = use == EigenUse::supremizers ? "pga_" : "infsup_";
-  try {
-    (void)make_small_svd(prefix);
-    if (use == EigenUse::supremizers)
-      (void)SmallEigen(prefix);
-    else
-      (void)make_infsup_eps();
-  } catch (const Error &error) {
-    throw bad_input(std::string("the options -") + prefix + "* do not work (" + error.what() + ")");
-  }
   std::string unknown;
-  for (const std::string &name : unread_names(eigen_prefixes()))
-    if (name.starts_with(prefix)) unknown += " -" + name;
+  for (const std::string &prefix : asked) {
+    try {
+      (void)make_small_svd(prefix.c_str());
+      if (prefix == "pga_")
+        (void)SmallEigen(prefix.c_str());
+      else
+        (void)make_infsup_eps(PETSC_COMM_SELF, 64);
+    } catch (const Error &error) {
+      throw bad_input("the options -" + prefix + "* do not work (" + error.what() + ")");
+    }
+    for (const std::string &name : unread_names(eigen_prefixes()))
+      if (name.starts_with(prefix)) unknown += " -" + name;
+  }
   if (!unknown.empty()) throw bad_input("nothing of this run asks for the option" + unknown);
 }
 

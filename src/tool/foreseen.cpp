@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/mor/high_fidelity_pair.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/contact_cost.hpp"
 
@@ -183,7 +184,8 @@ Foresight foresee(const ToolOptions &options, const std::vector<Mu> &training,
   each_rank(stage::multipliers, 3 * m * m);
   each_rank(stage::cone, generators);
   each_rank(stage::riesz, generators);
-  each_rank(stage::infsup_tolerance, factor + 4 * c * c);
+  each_rank(stage::infsup_tolerance,
+            iterates_constants(m, n) ? 4 * factor / ranks : factor + 4 * c * c);
   each_rank(stage::pga, generators + 1.5 * n * joined / ranks);
   each_rank(stage::contact_curve, 6 * m * samples * samples);
   each_rank(stage::projection, model);

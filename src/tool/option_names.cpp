@@ -65,7 +65,8 @@ const std::vector<SolverPrefix> &solver_objects() {
       {"pga_", {"eps_", "svd_"}, "offline: the projected greedy algorithm (SLEPc)"},
       {"infsup_",
        {"svd_", "eps_"},
-       "verify: inf-sup constants (SLEPc); eps: beta_HF of many multipliers"}};
+       "verify, -pga_tolerance infsup: inf-sup constants (SLEPc); eps: beta_HF, c_HF of many "
+       "multipliers"}};
   return all;
 }
 

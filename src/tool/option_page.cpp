@@ -125,16 +125,19 @@ follow it, or if nothing in the run reads it. A case file may hold SLEPc's optio
 
 constexpr const char *of_petsc_more = R"(
 Linear solvers are direct; iterative ones (`-hf_ksp_type cg`) have rtol 1e-13, that of `vi` 1e-12.
-`-nitsche_snes_rtol` [1e-12] is that of the residual relative to its terms. Of PETSc itself, `-log_view`
+`-nitsche_snes_rtol` [1e-12] is that of the residual relative to its terms at the start. Of PETSc itself, `-log_view`
 shows one stage per step; its own options are for the command line alone.
 
 SLEPc solves the eigenproblems of the projected greedy algorithm. If b(mu) is a multiple of one fixed
 form ("B only scales"), one singular value decomposition replaces them all. Each rank has objects of its
 own for its share of the parameters, of type lapack: this type returns all pairs of a small matrix,
-which iterative types do not do for clustered values (fewer than all are an error). `-infsup_eps_` alone is iterative: where that is
-faster (m^3 > 1e5 n for m multipliers and n displacement dofs) beta_HF is the smallest eigenvalue of
-B V^-1 B^T x = beta^2 W x by inverse iteration, with one factorisation of [V B^T; B 0] for each
-parameter (the other constants still need a dense matrix of the size of the contact dofs).
+which iterative types do not do for clustered values (fewer than all are an error). `-infsup_eps_` alone
+is iterative, by objects of all ranks: where that is faster (m^3 > 1e5 n for m multipliers and n
+displacement dofs) beta_HF and c_HF are the smallest and the largest eigenvalue of
+B V^-1 B^T x = beta^2 W x, with one factorisation of V for all parameters and one of [V B^T; B 0] for
+each, both over the ranks, and without a dense matrix. `-infsup_svd_` is of the same two constants
+elsewhere, and of all others: these take a dense matrix of the size of the contact dofs, but for verify
+where beta_HF is iterated and b only scales.
 )";
 
 constexpr const char *of_online = R"(

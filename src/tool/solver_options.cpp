@@ -16,15 +16,10 @@ struct Ineffective {
   const char *name;
   const char *instead;
 };
-constexpr const char *by_residual =
-    "Newton's method ends by its residual, relative to its terms: use -nitsche_snes_rtol";
 constexpr const char *by_iterations =
     "a factorisation is kept while conjugate gradients need few iterations: use -nitsche_ksp_rtol "
     "or -nitsche_ksp_max_it";
-constexpr Ineffective ineffective[] = {{"nitsche_snes_stol", by_residual},
-                                       {"nitsche_snes_divergence_tolerance", by_residual},
-                                       {"nitsche_snes_convergence_test", by_residual},
-                                       {"nitsche_snes_lag_preconditioner", by_iterations},
+constexpr Ineffective ineffective[] = {{"nitsche_snes_lag_preconditioner", by_iterations},
                                        {"nitsche_ksp_reuse_preconditioner", by_iterations}};
 
 const std::vector<std::string> &of_solvers() {

@@ -95,8 +95,6 @@ TEST_F(Nitsche, BadInputIsSaidInOneLine) {
                       {offline + "-nitsche_gamma 5", "-nitsche_gamma0"},
                       {offline + "-formulation mixed -nitsche_quadrature full", "-formulation"},
                       {offline + "-nitsche_snes_typo 3", "-nitsche_snes_typo"},
-                      {offline + "-nitsche_snes_stol 1e-3", "use -nitsche_snes_rtol"},
-                      {offline + "-nitsche_snes_divergence_tolerance 9", "use -nitsche_snes_rtol"},
                       {offline + "-nitsche_snes_lag_preconditioner 2", "use -nitsche_ksp_rtol"},
                       {offline + "-hf_pc_type lu", "Nitsche's method has -nitsche_pc_type"}});
 }

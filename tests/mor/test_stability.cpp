@@ -5,6 +5,7 @@
 #include "grid.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/session.hpp"
+#include "rbvi/solve/linear.hpp"
 #include "stability_bound.hpp"
 
 #include <gtest/gtest.h>
@@ -55,6 +56,35 @@ struct Membrane {
   }
 };
 
+/// Rows over the ranks; `local_columns` of this rank.
+Handle<Mat> distributed_rows(const Matrix &all, PetscInt local_columns) {
+  const auto rows = static_cast<PetscInt>(all.rows()), columns = static_cast<PetscInt>(all.cols());
+  Handle<Mat> matrix;
+  PetscInt first = 0, last = 0;
+  RBVI_CALL(MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, local_columns, rows, columns, columns,
+                         nullptr, columns, nullptr, matrix.put()));
+  RBVI_CALL(MatGetOwnershipRange(matrix.get(), &first, &last));
+  for (PetscInt row = first; row < last; ++row)
+    for (PetscInt column = 0; column < columns; ++column)
+      if (all(row, column) != 0)
+        RBVI_CALL(MatSetValue(matrix.get(), row, column, all(row, column), INSERT_VALUES));
+  RBVI_CALL(MatAssemblyBegin(matrix.get(), MAT_FINAL_ASSEMBLY));
+  RBVI_CALL(MatAssemblyEnd(matrix.get(), MAT_FINAL_ASSEMBLY));
+  return matrix;
+}
+
+/// `b`: dual x free dofs.
+PairConstants iterated(const Membrane &membrane, const Matrix &b) {
+  PetscInt columns = 0;
+  RBVI_CALL(MatGetLocalSize(membrane.product.get(), nullptr, &columns));
+  const Handle<Mat> rows = distributed_rows(b, columns),
+                    w = distributed_rows(Matrix(membrane.w_product), PETSC_DECIDE);
+  const Handle<KSP> v = make_direct_solver(PETSC_COMM_WORLD, "v_");
+  RBVI_CALL(MatSetOption(membrane.product.get(), MAT_SPD, PETSC_TRUE));
+  set_operator(v.get(), membrane.product.get());
+  return iterated_constants(v.get(), rows.get(), w.get());
+}
+
 Matrix beside(const Matrix &a, const Matrix &b) {
   Matrix both(a.rows(), a.cols() + b.cols());
   both << a, b;
@@ -86,6 +116,10 @@ TEST(RieszSpace, of_few_loads_has_the_same_products) {
   const Matrix t = few.factor.transpose(),
                exact = supremizer_coordinates(all, membrane.b_contact, x);
   EXPECT_LE((t.transpose() * t - exact.transpose() * exact).norm(), 1e-12 * exact.squaredNorm());
+  EXPECT_LE((supremizer_coordinates(few, 3 * membrane.b_contact, x) - 3 * t).norm(),
+            1e-12 * t.norm());
+  EXPECT_THROW(supremizer_coordinates(few, membrane.b_contact, random_matrix(duals, 4, 24)), Error)
+      << "no multiple of these loads";
   const LinearBasis modes = membrane.basis(random_matrix(n * n, 9, 22));
   const Matrix of_few = mode_coordinates(few, modes), of_all = mode_coordinates(all, modes);
   ASSERT_EQ(of_few.rows(), 4 + 9);
@@ -226,13 +260,8 @@ TEST_P(InfSupConstants, agree_with_brute_force_in_the_full_space) {
 
   const InfSup beta = infsup_constants(space, membrane.b_contact, coordinates, both, x);
   const double scale = beta.on;
-  const double hf = high_fidelity_constant(space, membrane.b_contact, membrane.w_product);
-  EXPECT_NEAR(hf,
-              brute_infsup(v, w, membrane.b_full, Matrix::Identity(n * n, n * n),
-                           Matrix::Identity(duals, duals)),
-              1e-9 * scale);
-  const SparseInfSup sparse(membrane.product.get(), membrane.trace);
-  EXPECT_NEAR(sparse.constant(membrane.b_contact, membrane.w_product), hf, 1e-9 * hf);
+  const double hf = brute_infsup(v, w, membrane.b_full, Matrix::Identity(n * n, n * n),
+                                 Matrix::Identity(duals, duals));
   EXPECT_NEAR(beta.dec, brute_infsup(v, w, membrane.b_full, primal, x), 1e-7 * scale);
   EXPECT_NEAR(beta.off, brute_infsup(v, w, membrane.b_full, all, x), 1e-7 * scale);
   const Matrix online = gathered(membrane.basis(beside(primal, riesz)).columns.get());
@@ -263,17 +292,23 @@ INSTANTIATE_TEST_SUITE_P(Sizes, InfSupConstants,
                                          std::tuple(10, 3, 6), std::tuple(12, 1, 12),
                                          std::tuple(1, 4, 14)));
 
-TEST(SparseInfSup, more_multipliers_than_dofs_and_dependent_rows) {
+/// Over all multipliers, by a factorisation that the ranks share.
+TEST(IteratedConstants, agree_with_brute_force_on_any_number_of_ranks) {
   const Membrane membrane;
-  const SparseInfSup sparse(membrane.product.get(), membrane.trace);
-  const Index dofs = 2 * n;
-  EXPECT_EQ(sparse.constant(Matrix(Matrix::Ones(dofs + 1, dofs)).sparseView(),
-                            Matrix(Matrix::Identity(dofs + 1, dofs + 1)).sparseView()),
-            0);
-  Matrix b = Matrix(membrane.b_contact);
+  const Matrix &b = membrane.b_full;
+  const PairConstants found = iterated(membrane, b);
+  const Vector squares = generalised_eigenvalues(b * membrane.dense.llt().solve(b.transpose()),
+                                                 Matrix(membrane.w_product));
+  EXPECT_NEAR(found.beta, std::sqrt(squares(0)), 1e-9 * found.beta);
+  EXPECT_NEAR(found.c, std::sqrt(squares(duals - 1)), 1e-12 * found.c);
+}
+
+TEST(IteratedConstants, dependent_rows_are_a_failure) {
+  const Membrane membrane;
+  Matrix b = membrane.b_full;
   b.row(3).setZero();
   const ErrorRecorder quiet;
-  EXPECT_THROW(sparse.constant(b.sparseView(), membrane.w_product), Error);
+  EXPECT_THROW(iterated(membrane, b), Error);
 }
 
 TEST(InfSupConstants, smallest_is_not_lost_at_the_root_of_round_off) {

@@ -4,6 +4,7 @@
 #include "reduced.hpp"
 
 #include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/mor/high_fidelity_pair.hpp"
 #include "rbvi/study/stability_report.hpp"
 #include "tests/catalogue.hpp"
 
@@ -182,6 +183,32 @@ TEST_P(BothMaps, ConstantsComeInTheirOrder) {
     const BoundCheck bound = check_bound(PETSC_COMM_WORLD, r.problem, check, at_rest(set));
     EXPECT_EQ(bound.exceptions, 0);
     EXPECT_GE(bound.smallest, 1 - 1e-9);
+  }
+}
+
+/// So many multipliers that beta_HF and c_HF are iterated; where b only scales, supremizers are
+/// then those of the loads alone.
+TEST(ReducedMembrane, ConstantsOfManyMultipliersAreThoseOfTheDenseMatrices) {
+  ReduceOptions options;
+  options.pod.tolerance = 1e-2;
+  options.cone.type = ConeType::mcpg;
+  Reduced r({{"circle_edges", "72"}}, "grid:3,1,1", options);
+  ASSERT_TRUE(iterates_constants(r.problem));
+  const StabilityCheck few = make_stability_check(r.problem, r.model);
+  const RieszSpace all = make_riesz_space(r.problem.v_product(), r.problem.trace());
+  ASSERT_GT(few.space.loads.size(), 0);
+  const std::vector<Mu> set = parse_set(r.problem.scene().parameters, "random:2:3");
+  const auto found = infsup_over(PETSC_COMM_WORLD, r.problem, few, at_rest(set), true);
+  for (std::size_t p = 0; p < set.size(); ++p) {
+    Operators op;
+    r.problem.assemble_contact(set[p], op);
+    const PairConstants dense = dense_constants(r.problem, all, op);
+    EXPECT_NEAR(found[p].hf, dense.beta, 1e-8 * dense.beta);
+    EXPECT_NEAR(found[p].c_hf, dense.c, 1e-8 * dense.c);
+    const Matrix t = supremizer_coordinates(all, op.b, few.dual);
+    EXPECT_NEAR(found[p].on, singular_values(t)(t.cols() - 1), 1e-8 * found[p].on);
+    EXPECT_GE(found[p].on * (1 + 1e-9), found[p].off);
+    EXPECT_GT(found[p].off, 0);
   }
 }
 

@@ -104,10 +104,10 @@ TEST(SupportStability, ConstantsAreProportionalToTheRadius) {
   const RieszSpace space = make_riesz_space(problem.v_product(), problem.trace());
   Operators op;
   problem.assemble_contact({1}, op);
-  const PairConstants one = high_fidelity_pair(problem, space, op);
+  const PairConstants one = dense_constants(problem, space, op);
   EXPECT_GT(one.beta, 0);
   problem.assemble_contact({0.8}, op);
-  const PairConstants other = high_fidelity_pair(problem, space, op);
+  const PairConstants other = dense_constants(problem, space, op);
   EXPECT_NEAR(other.beta, 0.8 * one.beta, 1e-9 * one.beta);
   EXPECT_NEAR(other.c, 0.8 * one.c, 1e-9 * one.c);
   EXPECT_EQ(weakest_form(problem, at_rest({{0.9}, {0.75}, {1.3}})).mu, Mu{0.75});
@@ -125,7 +125,7 @@ TEST(SupportStability, TheRatioInNormsOfTheMappedDomainIsThatOfAnotherCode) {
     const RieszSpace space = make_riesz_space(problem.v_product(), problem.trace());
     Operators op;
     problem.assemble_contact({radius}, op);
-    const PairConstants pair = high_fidelity_pair(problem, space, op);
+    const PairConstants pair = dense_constants(problem, space, op);
     ratios.push_back(pair.beta / pair.c);
   }
   EXPECT_NEAR(ratios[0], 0.059, 0.002);

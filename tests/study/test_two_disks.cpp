@@ -6,6 +6,9 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/mor/high_fidelity_pair.hpp"
+#include "rbvi/par/collective.hpp"
+#include "rbvi/par/small_svd.hpp"
+#include "rbvi/solve/linear.hpp"
 #include "rbvi/study/stability_report.hpp"
 #include "tests/catalogue.hpp"
 
@@ -148,23 +151,73 @@ TEST(ReducedDisks, OtherDiscretisationsReduceAsWell) {
   }
 }
 
-/// beta_HF and c_HF by iterations are those of dense matrices, with multipliers without a partner,
-/// too.
+/// What both ways find at the centre of a scene's box.
+struct BothWays {
+  explicit BothWays(const Scene &scene)
+      : problem(PETSC_COMM_WORLD, scene, {}),
+        space(make_riesz_space(problem.v_product(), problem.trace())),
+        v(make_direct_solver(PETSC_COMM_WORLD, "v_")) {
+    problem.assemble_contact(box_centre(problem.scene().parameters), op);
+    set_operator(v.get(), problem.v_product());
+  }
+  PairConstants dense() const { return dense_constants(problem, space, op); }
+  PairConstants iterated() { return iterated_constants(problem, v.get(), op); }
+
+  Problem problem;
+  RieszSpace space;
+  Handle<KSP> v;
+  Operators op;
+};
+
+/// beta_HF and c_HF by iterations over the ranks are those of dense matrices, with multipliers
+/// without a partner, too.
 TEST(HighFidelityPair, TheIterationsAgreeWithDenseMatrices) {
   for (const std::string name : {"membrane_obstacle", "two_disks", "rigid_disk"}) {
     SCOPED_TRACE(name);
-    Problem problem(PETSC_COMM_WORLD, make_scene(name), {});
-    const RieszSpace space = make_riesz_space(problem.v_product(), problem.trace());
-    const std::optional<SparseInfSup> sparse(std::in_place, problem.v_product(), problem.trace());
-    EXPECT_FALSE(sparse_infsup(problem)) << "few multipliers";
-    Operators op;
-    problem.assemble_contact(box_centre(problem.scene().parameters), op);
-    const PairConstants dense = high_fidelity_pair(problem, space, op),
-                        iterated = high_fidelity_pair(problem, space, op, sparse);
+    BothWays ways(make_scene(name));
+    EXPECT_FALSE(iterates_constants(ways.problem)) << "few multipliers";
+    const PairConstants dense = ways.dense(), iterated = ways.iterated();
     EXPECT_GT(dense.beta, 0);
-    EXPECT_NEAR(iterated.beta, dense.beta, 1e-6 * dense.beta);
+    EXPECT_NEAR(iterated.beta, dense.beta, 1e-8 * dense.beta);
     EXPECT_NEAR(iterated.c, dense.c, 1e-9 * dense.c);
   }
+}
+
+/// How many solvers of SLEPc of a kind, "eps" or "svd", this rank prints while `work` runs.
+template <class Work> long shown(const std::string &kind, const Work &work) {
+  const std::string option = "-infsup_" + kind + "_view";
+  RBVI_CALL(PetscOptionsSetValue(nullptr, option.c_str(), nullptr));
+  testing::internal::CaptureStdout();
+  work();
+  const std::string text = testing::internal::GetCapturedStdout();
+  RBVI_CALL(PetscOptionsClearValue(nullptr, option.c_str()));
+  const std::string object = kind == "eps" ? "EPS Object: (infsup_)" : "SVD Object: (infsup_)";
+  long objects = 0;
+  for (auto at = text.find(object); at != std::string::npos; at = text.find(object, at + 1))
+    ++objects;
+  return objects;
+}
+
+/// The prefix infsup_ reaches beta_HF and c_HF in either way.
+TEST(HighFidelityPair, FollowsTheOptionsOfSlepc) {
+  BothWays ways(make_scene("two_disks", {{"arc_edges", "20"}}));
+  // A large matrix lets the SVD object of the prefix go, which keeps the options of its first call.
+  singular_values(Matrix::Identity(320, 320), "infsup_");
+  EXPECT_EQ(shown("svd", [&] { ways.dense(); }), 1);
+  singular_values(Matrix::Identity(320, 320), "infsup_");
+  const long objects = shown("eps", [&] { ways.iterated(); });
+  EXPECT_EQ(objects, rank_of(PETSC_COMM_WORLD) == 0 ? 2 : 0) << "beta_HF and c_HF";
+  RBVI_CALL(PetscOptionsSetValue(nullptr, "-infsup_eps_max_it", "1"));
+  RBVI_CALL(PetscOptionsSetValue(nullptr, "-infsup_eps_ncv", "3"));
+  std::string message;
+  try {
+    ways.iterated();
+  } catch (const Error &error) {
+    message = error.what();
+  }
+  RBVI_CALL(PetscOptionsClearValue(nullptr, "-infsup_eps_max_it"));
+  RBVI_CALL(PetscOptionsClearValue(nullptr, "-infsup_eps_ncv"));
+  EXPECT_NE(message.find("raise -infsup_eps_max_it"), std::string::npos) << message;
 }
 
 TEST(ReducedDisks, ASingleSampleReturnsItself) {

@@ -26,6 +26,7 @@ EDGES = {"5": "158", "2.5": "316", "1.25": "632"}  # of the arc, by their length
 MEASURED_FROM = ("edges", "arc")  # the gap
 FACTORS = ("0.01", "0.1", "0.3", "0.5", "1", "2", "10", "100")
 GAMMA0 = 11.54
+BOUNDED = ["-nitsche_bounds", "nonpenetration"]
 GENERATORS = (10, 30, 40)
 SIZES = (5, 10, 15, 20, 30, 40)
 ALL_SIZES = ["-pod_tolerance", "0", "-pod_max_size", "60"]  # the tables of errors go over N
@@ -75,6 +76,11 @@ def solve_all(study):
         *VARIANTS["none"], "-mu", radius, "-nitsche_gamma0", str(float(factor) * GAMMA0)])
             for factor in FACTORS for radius in RADII}
     for law in LAWS:
+        for factor in FACTORS[4:] if law == "none" else ("1",):
+            for radius in RADII:
+                jobs["bounded", law, factor, radius] = (f"bounded_{law}_{factor}_{radius}", [
+                    *VARIANTS[law], "-mu", radius, *BOUNDED, "-nitsche_gamma0",
+                    str(float(factor) * GAMMA0)])
         for start in MEASURED_FROM:
             for h in sizes_of_edges(study):
                 for radius in RADII:
@@ -142,6 +148,29 @@ def gamma_study(answers):
                          f"{100 * found['law_error_normal']:.3f}"])
     return markdown(f"gamma0 / {GAMMA0}, without friction",
                     ["factor", "R", "Newton steps", "J", "centre pressure", "e_n in %"], rows)
+
+
+def bounded(answers):
+    """What SNES's bounds change: each pair of values without and with them."""
+    rows = []
+    for key, found in answers.items():
+        if key[0] != "bounded":
+            continue
+        _, law, factor, radius = key
+        free = answers["gamma0", factor, radius] if law == "none" else answers["cold", law, radius]
+        if isinstance(found, str) or isinstance(free, str):
+            rows.append([LAWS[law], factor, radius, "no answer", *[""] * 5])
+            continue
+        rows.append([LAWS[law], factor, radius,
+                     f"{free['iterations']:.0f} / {found['iterations']:.0f}",
+                     " / ".join(short(x["max_penetration"]) for x in (free, found)),
+                     f"{free['normal_force']:.6f}",
+                     short(found["normal_force"] / free["normal_force"] - 1),
+                     short(found["energy"] / free["energy"] - 1),
+                     " / ".join(f"{100 * x['law_error_normal']:.3f}" for x in (free, found))])
+    return markdown("Without / with -nitsche_bounds nonpenetration",
+                    ["friction", f"gamma0 / {GAMMA0}", "R", "Newton steps", "u_n - g at a node in m",
+                     "F_n without", "F_n changes by", "J changes by", "e_n in %"], rows)
 
 
 def newton_steps(runs, answers):
@@ -269,7 +298,8 @@ def work(study):
     answers = solve_all(study)
     runs = all_runs(study)
     tables = [values(answers), law_errors(study, answers), newton_steps(runs, answers),
-              gamma_study(answers), interpolated_terms(runs), reduced_errors(runs), methods(runs)]
+              gamma_study(answers), bounded(answers), interpolated_terms(runs),
+              reduced_errors(runs), methods(runs)]
     from nitsche_study_figures import draw_all
     return tables, lambda directory: draw_all(study, runs, directory)
 

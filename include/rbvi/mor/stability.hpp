@@ -57,7 +57,8 @@ Matrix orthonormal_dual_basis(const Matrix &generators, const SparseMatrix &w_pr
                               double tolerance = 1e-9);
 
 /// L^T B_c(mu)^T X: n_c x columns of X, the coordinates of T(mu) X. `b_contact`: dual x all contact
-/// dofs; X must not couple with those that `space` leaves out.
+/// dofs; X must not couple with those that `space` leaves out. Of loads: throws failure unless
+/// B_c(mu)^T X is a multiple of them.
 Matrix supremizer_coordinates(const RieszSpace &space, const SparseMatrix &b_contact,
                               const Matrix &x);
 
@@ -104,11 +105,6 @@ std::vector<StabilityStep> stability_path(const Matrix &coordinates, Index modes
 /// `enriched`: of V_N + S; `x`: orthonormal dual basis.
 InfSup infsup_constants(const RieszSpace &space, const SparseMatrix &b_contact, const Matrix &modes,
                         const Matrix &enriched, const Matrix &x);
-
-/// beta_HF (2.3), over all rows of b; `w_product`: of their multipliers. A dense SVD of their
-/// number.
-double high_fidelity_constant(const RieszSpace &space, const SparseMatrix &b_contact,
-                              const SparseMatrix &w_product);
 
 struct PgaOptions {
   double tolerance = 0;   ///< on max sigma_S (2.27), below 1; 0: use `stability` instead

@@ -49,8 +49,8 @@ struct NitscheSystem;
 class NitscheSolver {
 public:
   /// Collective. SNES, KSP and PC options under -nitsche_; rtol is that of the residual, relative
-  /// to its terms, atol that of its norm. `problem` must outlive it; its contact is by Nitsche's
-  /// method.
+  /// to its terms at the start, atol that of its norm. `problem` must outlive it; its contact is by
+  /// Nitsche's method.
   NitscheSolver(Problem &problem, const NitscheOptions &options);
   ~NitscheSolver();
   /// Collective. `op`: the problem assembled at some mu; `start`: null: u = 0, in contact where its

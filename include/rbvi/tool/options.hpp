@@ -75,7 +75,7 @@ void check_solver_options(Problem &problem, const HfOptions &options);
 /// What a command solves with objects of SLEPc that take options.
 enum class EigenUse {
   none,
-  supremizers, ///< offline: the projected greedy, prefix pga_
+  supremizers, ///< offline: the projected greedy, prefix pga_, and its tolerance, prefix infsup_
   constants    ///< verify: inf-sup constants, prefix infsup_
 };
 
