@@ -49,6 +49,10 @@ ReducedNitsche::ReducedNitsche(const ReducedModel &model, NitscheLayer layer,
       std::make_unique<System>(model, layer_.cells, points_of(*model.contact.nitsche, layer_));
   if (model.contact.nitsche->rule == CurveRule::interpolated)
     interpolated_ = std::make_unique<Interpolated>(model, layer_);
+  else if (from_rest_)
+    throw bad_input(
+        "Newton's method from rest is for models by -nitsche_quadrature interpolated: ask "
+        "this one by the method exact");
 }
 
 ReducedNitsche::~ReducedNitsche() = default;

@@ -52,11 +52,10 @@ QueryOptions with_method(QueryOptions options, const ReducedModel &model, const 
   if (options.method == OnlineMethod::kacanov && !(model.has_multipliers() && follows_state(scene)))
     throw bad_input("Kacanov's iteration is for multipliers of contact that follows the "
                     "displacement: ask this model by the method exact");
-  if (options.method == OnlineMethod::newton &&
-      (model.has_multipliers() || model.contact.nitsche->rule != CurveRule::interpolated))
+  if (options.method == OnlineMethod::newton && model.has_multipliers())
     throw bad_input(
-        "Newton's method from rest is for models by -nitsche_quadrature interpolated: ask "
-        "this one by the method exact");
+        "Newton's method from rest is for models by Nitsche's method: ask this one by the "
+        "method exact");
   return options;
 }
 
