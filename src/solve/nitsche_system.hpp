@@ -40,6 +40,7 @@ struct NitscheSystem {
   double best = 1;                ///< the smallest part so far, and its step
   PetscInt best_step = 0;
   int factorisations = 0;
+  bool finished = false;   ///< the solve before: a factorisation that fails leaves one of no use
   bool factorised = false; ///< in this step
   std::exception_ptr failed;
 
