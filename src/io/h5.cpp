@@ -1,6 +1,7 @@
 #include "rbvi/io/h5.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/io/start_hdf5.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "seal.hpp"
 
@@ -38,11 +39,6 @@ private:
   herr_t (*close_)(hid_t) = nullptr;
 };
 
-/// Errors of HDF5 come back as ours: it prints nothing itself.
-void silence_hdf5() {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-}
-
 Id text_type() {
   Id type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.get(), H5T_VARIABLE);
@@ -70,6 +66,11 @@ Id memory_access() {
 }
 
 } // namespace
+
+void start_hdf5() {
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 struct H5Writer::Impl {
   std::unique_ptr<AtomicFile> disk; ///< null: in memory
@@ -118,12 +119,12 @@ struct H5Writer::Impl {
 };
 
 H5Writer::H5Writer() : impl_(std::make_unique<Impl>()) {
-  silence_hdf5();
+  start_hdf5();
   impl_->create(unused_name().c_str(), memory_access().get());
 }
 
 H5Writer::H5Writer(const Path &path) : impl_(std::make_unique<Impl>()) {
-  silence_hdf5();
+  start_hdf5();
   impl_->disk = std::make_unique<AtomicFile>(path);
   impl_->create(impl_->disk->temporary().c_str(), disk_access().get());
 }
@@ -290,7 +291,7 @@ std::string take(char *text) {
 
 H5Reader::H5Reader(const Path &path, const std::string &kind, int schema)
     : impl_(std::make_unique<Impl>()) {
-  silence_hdf5();
+  start_hdf5();
   verify_seal(path, kind, schema);
   impl_->path = path.string();
   impl_->file = Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, disk_access().get()), H5Fclose);

@@ -104,7 +104,7 @@ Balance find_balance(Vector beta, const std::function<SpringState(const Vector &
   constexpr int most_solves = 100;
   constexpr double tolerance = 1e-12, round_off = 1e-10, farthest = 1e10;
   // Changes of the excess, and jumps, over it.
-  constexpr double constant = 1e-6, weak = 0.04, longest = 1e4;
+  constexpr double constant = 1e-6, weak = 0.04, longest = 1e6;
   Balance result;
   Anderson anderson(beta.size());
   std::vector<Vector> images;

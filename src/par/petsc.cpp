@@ -1,6 +1,7 @@
 #include "rbvi/par/petsc.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/io/start_hdf5.hpp"
 #include "rbvi/par/session.hpp"
 
 #include <algorithm>
@@ -91,6 +92,7 @@ void end_quietly_without_reader() {
 
 Session::Session(int &argc, char **&argv, const char *help) {
   recorder_.emplace();
+  start_hdf5();
   RBVI_CALL(SlepcInitialize(&argc, &argv, nullptr, help));
   end_quietly_without_reader();
 }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <random>
 
 namespace rbvi {
@@ -100,16 +102,74 @@ std::vector<int> dependence_of_map(Reader &reader) {
 
 namespace {
 
+/// Names in place of what the point decides, so that no piece of a map is missed, however small it
+/// is or far away.
+class Pieces {
+public:
+  Expression named(const Expression &whole) {
+    names_ = whole.free_names();
+    Program program;
+    std::vector<std::size_t> begins; // of the operands that are not yet used
+    for (const Instruction &step : whole.program()) {
+      const auto count = static_cast<std::size_t>(operands_of(step.operation));
+      const std::size_t begin = count == 0 ? program.size() : begins[begins.size() - count];
+      if (step.operation == Operation::choose) {
+        if (const auto name = named_from(begins.back(), program)) {
+          program.resize(begins.back());
+          program.push_back(*name);
+        }
+      }
+      program.push_back(step);
+      if (step.operation == Operation::min || step.operation == Operation::max) {
+        if (const auto name = named_from(begin, program)) {
+          program.back() = *name;
+          program.push_back({Operation::choose});
+        }
+      }
+      begins.resize(begins.size() - count);
+      begins.push_back(begin);
+    }
+    return {program, names_};
+  }
+  std::vector<std::string> all() const {
+    std::vector<std::string> names;
+    for (const auto &[text, name] : name_of_)
+      names.push_back(name);
+    return names;
+  }
+
+private:
+  /// A name for what `program` has from `begin` on, if the point is in it.
+  std::optional<Instruction> named_from(std::size_t begin, const Program &program) {
+    const Program part(program.begin() + static_cast<std::ptrdiff_t>(begin), program.end());
+    const Expression condition(part, names_);
+    if (std::ranges::none_of(condition.free_names(),
+                             [](const auto &name) { return name == "x" || name == "y"; }))
+      return std::nullopt;
+    const std::string next = "piece_of_map_" + std::to_string(name_of_.size());
+    names_.push_back(name_of_.emplace(condition.text(), next).first->second);
+    return Instruction{Operation::name, static_cast<int>(names_.size()) - 1};
+  }
+  std::vector<std::string> names_;
+  std::map<std::string, std::string> name_of_; ///< by text
+};
+
 /// Whether holds(d_x map, d_y map), at random points and parameters.
 template <class Holds>
 bool holds_of_slopes(const Reader &reader, const Scene &scene, const Holds &holds) {
   const std::vector<Expression> map = map_of(reader);
   if (map.empty()) return true;
-  std::vector<std::string> names = reader.parameters;
-  names.insert(names.end(), {"x", "y", "z"});
-  std::vector<BoundExpression> bound;
+  Pieces pieces;
+  std::vector<Expression> components;
   for (const Expression &component : map)
-    bound.push_back(bound_to(expanded(component, reader.lets), names, {"x", "y"}));
+    components.push_back(pieces.named(expanded(component, reader.lets)));
+  std::vector<std::string> names = reader.parameters;
+  const std::vector<std::string> conditions = pieces.all();
+  names.insert(names.end(), {"x", "y", "z"});
+  names.insert(names.end(), conditions.begin(), conditions.end());
+  std::vector<BoundExpression> bound;
+  for (const Expression &component : components)
+    bound.push_back(bound_to(component, names, {"x", "y"}));
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
   constexpr int points = 400;
@@ -120,6 +180,8 @@ bool holds_of_slopes(const Reader &reader, const Scene &scene, const Holds &hold
     // Bodies are of any size: six decades of it about 1.
     const double size = std::pow(10, 6 * unit(random) - 3), angle = 2 * M_PI * unit(random);
     at.insert(at.end(), {size * std::cos(angle), size * std::sin(angle), 0});
+    for (std::size_t c = 0; c < conditions.size(); ++c)
+      at.push_back(unit(random) < 0.5 ? 0 : 1);
     Point by_x{}, by_y{};
     for (std::size_t c = 0; c < 2; ++c) {
       double value;

@@ -194,7 +194,8 @@ std::optional<MethodResult> HighFidelity::run_eliminated(const Mu &mu, const Ope
     } else {
       measure_over_ranks(op, distribute(problem_.dual_layout(), op, op.laws), slip, result);
       if (result.residual <= largest_residual) return result;
-      complaint = "a KKT residual of " + short_number(result.residual);
+      complaint = "a KKT residual of " + short_number(result.residual) +
+                  " is left: try -hf_contact condensed";
     }
   } catch (const Error &error) { // of every rank
     complaint = error.what();

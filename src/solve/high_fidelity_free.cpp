@@ -73,7 +73,8 @@ MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, const Vec
     throw failure("the forces on bodies that contact alone holds do not balance in " +
                   std::to_string(balance.solves) +
                   " solves: " + describe(bodies, dim, lu_solve(lengths, balance.excess)) +
-                  ": give them friction or displacements that hold them");
+                  ": give them friction or displacements that hold them, or stiffnesses less far "
+                  "apart");
   if (grids_ == nullptr) static_cast<ContactOperators &>(all) = op;
   const Matrix loose = loose_motions(all.laws, problem_.held_by(all), result.lambda);
   if (loose.cols() > 0)

@@ -15,6 +15,7 @@ constexpr double bound_accuracy = 1e-12; ///< change of u by new bounds of frict
 constexpr double round_off = 1e-9;       ///< of that change: below it it may stagnate
 constexpr double stagnant = 0.9;         ///< of the last change
 constexpr double vanishing = 1e-9;       ///< of the start: below it terms count as zero
+constexpr double of_loads = 0.1;         ///< below it their residual is round-off of the loads
 constexpr int most_outer_iterations = 60;
 
 } // namespace
@@ -43,7 +44,7 @@ NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheStart *st
   }
   system.smallest_scale = 0;
   system.residual(u, system.force.get());
-  system.smallest_scale = vanishing * system.scale;
+  system.smallest_scale = std::max(vanishing * system.scale, of_loads * norm(system.f.get()));
   run(nested, u, result);
   result.factorisations = system.factorisations - factorised_before;
   result.residual = system.relative_residual(u);
@@ -54,6 +55,7 @@ NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheStart *st
   result.layer = system.on_layer(u);
   RBVI_CALL(MatMult(op.a, u, system.au.get()));
   result.energy = dot(system.au.get(), u) / 2 - dot(op.f, u);
+  system.finished = true;
   return result;
 }
 

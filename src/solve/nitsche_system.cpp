@@ -93,7 +93,8 @@ NitscheSystem::NitscheSystem(const NitscheSolver &of, const Problem &whole,
 }
 
 void NitscheSystem::set(const Operators &op) {
-  if (!snes) make_snes(op);
+  if (!snes || !finished) make_snes(op);
+  finished = false;
   mu = op.mu;
   faces = nitsche_faces(layer, mu, layer.cells);
   if (frames) {
@@ -267,6 +268,7 @@ int NitscheSystem::newton(Vec u, std::string &reason) {
 }
 
 void NitscheSystem::make_snes(const Operators &op) {
+  factorisations = 0;
   RBVI_CALL(MatDuplicate(op.a, MAT_COPY_VALUES, a_gamma.put()));
   RBVI_CALL(MatDuplicate(op.a, MAT_COPY_VALUES, tangent.put()));
   RBVI_CALL(MatSetOption(tangent.get(), MAT_SPD, PETSC_TRUE));

@@ -36,6 +36,7 @@ struct NitscheSystem {
   double scale = 0;          ///< of the last residual: the norms of its terms
   double smallest_scale = 0; ///< where the answer is zero all its terms are round-off
   int factorisations = 0;
+  bool finished = false;   ///< the solve before: a factorisation that fails leaves one of no use
   bool factorised = false; ///< in this step
   std::exception_ptr failed;
 

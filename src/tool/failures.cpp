@@ -26,7 +26,7 @@ void check_failures(const ToolOptions &options, const SweepReport &report, std::
                   reason.c_str());
   const auto failed = static_cast<double>(report.failed.size());
   if (!report.failed.empty() && report.failed.size() == total)
-    throw failure("no sample succeeded: see the reasons above");
+    throw failure("no sample succeeded, the first because " + report.failed.front().second);
   if (failed > options.max_failures * static_cast<double>(total) + 1e-9)
     throw failure(count_of(report, total, set) + ", more than -sweep_max_failures " +
                   short_number(options.max_failures) +

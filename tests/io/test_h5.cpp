@@ -249,6 +249,26 @@ TEST_F(SealedFile, FailedWritesLeaveNothing) {
   EXPECT_EQ(files(), 1U);
 }
 
+/// A large file, which is on the disk while it is written; the program ends by itself.
+TEST_F(SealedFile, AFullDiskIsNoCrashAtTheEnd) {
+  const auto fills = [&] {
+    std::signal(SIGXFSZ, SIG_IGN);
+    rlimit limit{};
+    ::getrlimit(RLIMIT_FSIZE, &limit);
+    limit.rlim_cur = 100000;
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      H5Writer writer(path);
+      for (const char *name : {"a", "b", "c"})
+        writer.write(name, Matrix(Matrix::Random(200, 200)));
+      writer.commit(path, "sample", 3);
+    } catch (const Error &) {
+      std::exit(3);
+    }
+  };
+  EXPECT_EXIT(fills(), testing::ExitedWithCode(3), "");
+}
+
 TEST_F(SealedFile, WritingReplacesAndFollowsLinks) {
   spill(path, "old");
   std::filesystem::create_symlink(path, directory / "link");

@@ -72,6 +72,15 @@ TEST(Case, AStiffnessIsExactWhereItSeparates) {
   EXPECT_FALSE(tangled.a.front().theta);
 }
 
+TEST(Case, AMapThatChangesASmallPieceFarAwayIsNoSimilarity) {
+  const std::string far = "y > 98765.4 and y < 98765.5 ? 2*y : y";
+  EXPECT_FALSE(scene_of({{"map", "[x, '" + far + "']"}}).a.front().theta);
+  EXPECT_FALSE(scene_of({{"map", "[x, 'max(y, 3*y - 2e5)']"}}).a.front().theta);
+  // Pieces that are similar each, by a condition that both components have.
+  const std::string pieces = "['y > 98765 ? 2*x : x', 'y > 98765 ? 2*y : y']";
+  EXPECT_TRUE(scene_of({{"map", pieces}}).a.front().theta);
+}
+
 TEST(Case, LoadsAreExactWhereTheDomainIsFixed) {
   const std::string load = "{own: {at: all, force: [0, -k*(1 + x)]}, "
                            "side: {at: sides, pressure: depth}}";

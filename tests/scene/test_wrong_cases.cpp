@@ -173,7 +173,7 @@ TEST(WrongCase, Parameters) {
       {k("range: [-1, 2], default: 1, spacing: log"), "is not positive"},
       {{{"parameters", "{depth: {range: [0.01, 0.1], default: 0.05}, k: {default: 1}, "
                        "nu: {range: [0.1, 0.6], default: 0.55}, young: {default: 15}}"}},
-       "parameter nu is 0.55, outside of [-0.99, 0.499]"},
+       "parameter nu is 0.55, outside of [-0.99, 0.4999]"},
       {{{"materials", "{rubber: {at: all, E: k, nu: nu}}"},
         {"parameters", "{depth: {range: [0.01, 0.1], default: 0.05}, nu: {default: 0.3}, "
                        "k: {default: -1}}"}},

@@ -2,6 +2,7 @@
 // exactly, whether its foot slides, sticks or slips, and as the mixed formulation does.
 #include "block_on_support.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/scene/case.hpp"
 
 #include <gtest/gtest.h>
 
@@ -42,6 +43,34 @@ void expect_exact(const std::string &degree, const std::string &friction, const 
   EXPECT_NEAR(*s.outputs.stick_half_width, exact.slip > 0 ? 0 : 0.5, 1e-13);
   EXPECT_LE(*s.outputs.friction_violation, near);
   EXPECT_LE(*s.outputs.law_error_tau_over_n, tolerance);
+}
+
+/// Where cells are flat gamma is too small.
+TEST(NitschePatch, AFailureIsNoOthers) {
+  const std::string text =
+      "rbvi: 1\nphysics: plane_strain\nmesh: {built_in: one_block}\n"
+      "parameters: {height: {range: [1e-3, 1], default: 1}}\nmap: [x, height*y]\n"
+      "materials: {rubber: {at: all, E: 15, nu: 0.35}}\n"
+      "imposed: {sides: {at: sides, ux: 0}, top: {at: top, ux: 0, uy: -0.05*height}}\n"
+      "contact: {floor: {at: contact, against: {plane: {normal: [0, -1], position: 0}}, "
+      "formulation: nitsche}}\n";
+  Problem problem(PETSC_COMM_WORLD, make_scene(read_case(text, "flat.yaml", {}), {}), {});
+  HighFidelity solver(problem, {});
+  EXPECT_THROW((void)solver.solve({1e-3}), Error);
+  EXPECT_NEAR(*solver.solve({1}).outputs.normal_force, 65.0 / 27, 1e-11);
+  EXPECT_THROW((void)solver.solve({1e-3}), Error);
+}
+
+/// Its sides are loaded, and nothing touches.
+TEST(NitschePatch, ALiftedBlockIsSolvedToRoundOff) {
+  for (const std::string friction : {"none", "coulomb"}) {
+    Scene scene = block("2", friction, "nitsche");
+    scene.parameters.all[0].lower = -0.1;
+    Problem problem(PETSC_COMM_WORLD, scene, {});
+    const HfSolution s = HighFidelity(problem, {}).solve({-0.05, 0.1, 0.3});
+    EXPECT_NEAR(*s.outputs.normal_force, 0, 1e-12) << friction;
+    EXPECT_LE(s.kkt.largest(), 1e-12) << friction;
+  }
 }
 
 TEST(NitschePatch, SlidesFreelyWithoutFriction) {

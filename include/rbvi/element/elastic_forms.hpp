@@ -8,7 +8,7 @@ namespace rbvi {
 
 /// Bounds of Young's modulus, as wide as round-off allows, and of Poisson's ratio, short of
 /// incompressible bodies; elements of degree 1 lock before that (core/locking.hpp).
-constexpr Range young_range{1e-6, 1e15}, poisson_range{-0.99, 0.499};
+constexpr Range young_range{1e-6, 1e15}, poisson_range{-0.99, 0.4999};
 /// Bounds of a coefficient of friction: above, solutions need not be unique.
 constexpr Range friction_range{0, 5};
 
