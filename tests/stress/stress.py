@@ -1,0 +1,70 @@
+#!/usr/bin/python3
+"""stress.py BIN WORK [--write] [--only models|solves|files|queries] [NAME...]: the stress table.
+
+Every scene, formulation and reduction on small meshes, with snapshots, meshes, materials, contact, parameters,
+files and processes that are as bad as they come. A row ends in `same` (the answer agrees with the undisturbed
+one, or with that of another method, within the tolerance that it shows), `refused` (one line that says why, exit
+status 1 or 2), or `WRONG`, which makes this program fail. NAME: part of the name of a scene. --write: the rows go
+to stress.csv and stress.md beside this file. Without python3-yaml the exit status is 77: skipped.
+"""
+
+import shutil
+import sys
+from pathlib import Path
+
+try:
+    import yaml  # noqa: F401
+except ImportError:
+    sys.exit(77)
+
+import models
+import processes
+import queries
+import solves
+from lab import Lab
+from scenes import scenes
+from table import OUTCOMES, SECTIONS, number, put
+
+
+def by_scene(lab, section, names):
+    """The rows, scene by scene."""
+    def chosen(name):
+        return not names or any(part in name for part in names)
+    if section == "models":
+        yield from (models.rows(lab, scene) for scene in scenes() if chosen(scene.name))
+    elif section == "solves":
+        yield from (solves.rows(lab, scene) for scene in solves.solved() if chosen(scene.name))
+    elif section == "files":
+        yield processes.rows(lab)
+    else:
+        asked = (scene for scene in scenes() if scene.name in queries.ASKED and chosen(scene.name))
+        yield from (queries.rows(lab, scene) for scene in asked)
+
+
+def main():
+    words = sys.argv[1:]
+    only = words[words.index("--only") + 1] if "--only" in words else None
+    plain = [word for word in words if not word.startswith("--") and word != only]
+    if len(plain) < 2:
+        sys.exit(__doc__)
+    work = Path(plain[1]).resolve()
+    shutil.rmtree(work, ignore_errors=True)
+    work.mkdir(parents=True)
+    lab, all_rows = Lab(plain[0], work), []
+    for section in [only] if only else SECTIONS:
+        for of_scene in by_scene(lab, section, plain[2:]):
+            rows = []
+            for row in of_scene:
+                rows.append(row)
+                print(f"{row.outcome:8} {row.scene:30} {row.what:60} {number(row.deviation):8} "
+                      f"{number(row.tolerance):8} {row.said}", flush=True)
+            if "--write" in words:
+                put(section, rows, work)
+            all_rows += rows
+    count = {outcome: sum(row.outcome == outcome for row in all_rows) for outcome in OUTCOMES}
+    print(f"{len(all_rows)} rows: " + ", ".join(f"{many} {outcome}" for outcome, many in count.items()))
+    sys.exit(1 if count["WRONG"] or not all_rows else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,60 @@
+"""The stress table: stress.csv, and stress.md made of it."""
+
+import csv
+import fcntl
+import subprocess
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+COLUMNS = ["section", "scene", "what", "outcome", "deviation", "tolerance", "said", "commit"]
+SECTIONS = {"models": "Reduced models", "solves": "High-fidelity answers", "files": "Files and processes",
+            "queries": "Many queries"}
+OUTCOMES = ("same", "refused", "WRONG")
+
+
+def number(value):
+    return "" if value is None else f"{value:.1e}"
+
+
+def commit():
+    def git(*words):
+        return subprocess.run(["git", "-C", str(HERE), *words], capture_output=True, text=True,
+                              check=True).stdout.strip()
+    changed = git("status", "--porcelain", "--untracked-files=no", "--", "../../src", "../../include",
+                  "../../cases/*.yaml")
+    return git("rev-parse", "--short", "HEAD") + ("-dirty" if changed else "")
+
+
+def put(section, rows, work):
+    """These rows in place of all others of their scenes."""
+    made_of = commit()
+    with open(HERE / "stress.csv", "a+", encoding="utf-8", newline="") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        file.seek(0)
+        scenes = {(section, row.scene) for row in rows}
+        table = [row for row in csv.DictReader(file) if (row["section"], row["scene"]) not in scenes]
+        table += [dict(zip(COLUMNS, [section, row.scene, row.what, row.outcome, number(row.deviation),
+                                     number(row.tolerance), row.said.replace(f"{work}/", ""), made_of]))
+                  for row in rows]
+        table.sort(key=lambda row: list(SECTIONS).index(row["section"]))
+        file.truncate(0)
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(table)
+        (HERE / "stress.md").write_text(page(table), encoding="utf-8")
+
+
+def page(table):
+    count = ", ".join(f"{sum(row['outcome'] == one for row in table)} {one}" for one in OUTCOMES)
+    commits = ", ".join(sorted({row["commit"] for row in table}))
+    lines = ["# Stress table", "",
+             f"Made by `tests/stress/stress.py build/bin WORK --write`, each program on one core, at commit {commits}. "
+             f"{len(table)} rows: {count}. What the columns mean stands in "
+             "[tests/README.md](../README.md#stress).", ""]
+    for section, title in SECTIONS.items():
+        lines += [f"## {title}", "", "| scene | what | outcome | deviation | tolerance | said |",
+                  "|---|---|---|---|---|---|"]
+        lines += ["| " + " | ".join(row[name].replace("|", "\\|") for name in COLUMNS[1:7]) + " |"
+                  for row in table if row["section"] == section]
+        lines.append("")
+    return "\n".join(lines)
