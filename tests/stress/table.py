@@ -2,6 +2,7 @@
 
 import csv
 import fcntl
+import re
 import subprocess
 from pathlib import Path
 
@@ -44,17 +45,42 @@ def put(section, rows, work):
         (HERE / "stress.md").write_text(page(table), encoding="utf-8")
 
 
+def summary(rows):
+    """One line for each disturbance: the scenes it left the same, refused, and how near the tolerance."""
+    lines = ["| what | same | refused | WRONG | largest deviation over its tolerance |", "|---|---|---|---|---|"]
+    for what in dict.fromkeys(row["what"] for row in rows):
+        of_it = [row for row in rows if row["what"] == what]
+        shares = [float(row["deviation"]) / float(row["tolerance"]) for row in of_it
+                  if row["outcome"] == "same" and row["deviation"] and row["tolerance"]]
+        counts = [str(sum(row["outcome"] == one for row in of_it)) for one in OUTCOMES]
+        lines.append(f"| {what} | {' | '.join(counts)} | {max(shares):.1g} |" if shares else
+                     f"| {what} | {' | '.join(counts)} | |")
+    return lines
+
+
+def sentences(rows):
+    """What is said where it is refused, numbers and places left out, with the scenes."""
+    found = {}
+    for row in rows:
+        if row["outcome"] != "same":
+            words = re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", row["said"].split(", while")[0])
+            found.setdefault(words, []).append(row["scene"])
+    lines = ["| said | rows | scenes |", "|---|---|---|"]
+    for words, scenes in sorted(found.items(), key=lambda item: -len(item[1])):
+        names = list(dict.fromkeys(scenes))
+        more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+        lines.append(f"| {words.replace('|', chr(92) + '|')} | {len(scenes)} | {', '.join(names[:3])}{more} |")
+    return lines
+
+
 def page(table):
     count = ", ".join(f"{sum(row['outcome'] == one for row in table)} {one}" for one in OUTCOMES)
     commits = ", ".join(sorted({row["commit"] for row in table}))
     lines = ["# Stress table", "",
              f"Made by `tests/stress/stress.py build/bin WORK --write`, each program on one core, at commit {commits}. "
-             f"{len(table)} rows: {count}. What the columns mean stands in "
+             f"{len(table)} rows in [stress.csv](stress.csv): {count}. What the columns mean stands in "
              "[tests/README.md](../README.md#stress).", ""]
     for section, title in SECTIONS.items():
-        lines += [f"## {title}", "", "| scene | what | outcome | deviation | tolerance | said |",
-                  "|---|---|---|---|---|---|"]
-        lines += ["| " + " | ".join(row[name].replace("|", "\\|") for name in COLUMNS[1:7]) + " |"
-                  for row in table if row["section"] == section]
-        lines.append("")
+        rows = [row for row in table if row["section"] == section]
+        lines += [f"## {title}", "", *summary(rows), "", *sentences(rows), ""]
     return "\n".join(lines)
