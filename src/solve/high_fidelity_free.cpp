@@ -69,12 +69,14 @@ MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, const Vec
   if (balance.flies)
     throw failure(describe(bodies, dim, lu_solve(lengths, balance.excess)) +
                   ", and is pushed on where no contact and no friction can hold it");
-  if (!balance.converged)
+  if (!balance.converged) {
+    const std::string moved = describe(bodies, dim, lu_solve(lengths, balance.excess));
     throw failure("the forces on bodies that contact alone holds do not balance in " +
-                  std::to_string(balance.solves) +
-                  " solves: " + describe(bodies, dim, lu_solve(lengths, balance.excess)) +
-                  ": give them friction or displacements that hold them, or stiffnesses less far "
+                  std::to_string(balance.solves) + " solves: " + moved +
+                  (moved.empty() ? "" : ": ") +
+                  "give them friction or displacements that hold them, or stiffnesses less far "
                   "apart");
+  }
   if (grids_ == nullptr) static_cast<ContactOperators &>(all) = op;
   const Matrix loose = loose_motions(all.laws, problem_.held_by(all), result.lambda);
   if (loose.cols() > 0)

@@ -21,6 +21,7 @@ FEW = {
     "rigid_disk/large": ["-train", "random:8:1", "-arc_edges", "40"],
     "rigid_disk/large_nitsche": ["-train", "random:8:1", "-arc_edges", "40"],
     "rigid_disk/nitsche": ["-train", "grid:5", "-arc_edges", "40"],
+    "rigid_disk/nitsche_published": ["-train", "grid:9", "-radius", "0.8,1", "-arc_edges", "40"],
     "rigid_disk/published": ["-train", "grid:21"],
     "rigid_disk/published_large": ["-train", "random:8:1", "-arc_edges", "40"],
     "roller": ["-train", "grid:3,3"],
@@ -41,6 +42,9 @@ CHECKS = ("seconds", "iterations", "kkt_residual", "quadrature_residual", "frict
           "load_steps", "contraction", "training", "max_penetration")
 BY_ORDER = 1e-10  # over the largest of each column
 BY_RANKS = 1e-8  # what POD and greedy choices leave of the round-off of the samples
+# Its supremizers are those at all states of the iterations, which start from the sample before on the
+# same rank: the converged samples agree, the states on the way do not.
+BY_STATES = {"rigid_disk/published_large": 1e-3}
 
 
 def call(*command):
@@ -141,7 +145,7 @@ def main(binaries, out):
         print(f"{name:36s} order {by_order:.1e} {of_order:22s} ranks {by_ranks:.1e} {of_ranks}")
         if not by_order <= BY_ORDER:
             wrong.append(f"{name}: {of_order} depends on the order of the queries")
-        if not by_ranks <= BY_RANKS:
+        if not by_ranks <= BY_STATES.get(name, BY_RANKS):
             wrong.append(f"{name}: {of_ranks} depends on the number of ranks")
     for line in wrong:
         print(line)
