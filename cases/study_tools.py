@@ -2,6 +2,7 @@
 
 import csv
 import os
+import re
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -18,6 +19,18 @@ ENRICHMENTS = {
 }
 
 
+def last_of_each(words):
+    """The words of a command line, where an option that is given again takes the place of the former."""
+    taken, name = {"": []}, ""
+    for word in map(str, words):
+        if re.match("-[a-z]", word):
+            name = word
+            taken[name] = []
+        else:
+            taken[name].append(word)
+    return [word for name, values in taken.items() for word in ([name] if name else []) + values]
+
+
 class Study:
     """Runs of one case, in variants (options that change the high-fidelity answers)."""
 
@@ -32,7 +45,7 @@ class Study:
             "OMP_NUM_THREADS": "1"}
 
     def call(self, *arguments, program="rbvi"):
-        done = subprocess.run([self.binaries / program, *arguments], env=self.environment,
+        done = subprocess.run([self.binaries / program, *last_of_each(arguments)], env=self.environment,
                               capture_output=True, text=True, check=False)
         if done.returncode != 0:
             sys.exit(f"study: {program} {' '.join(map(str, arguments))}\n{done.stderr}")
