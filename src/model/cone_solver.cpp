@@ -141,18 +141,27 @@ void ConeSolver::check_pull(const ReducedAnswer &answer) const {
                     .str());
 }
 
-/// From the undeformed body, on the trace of the primal basis, until (A.8) is met in its norm.
+/// From the undeformed body, on the trace of the primal basis, until (A.8) is met in its norm. A
+/// state at which contact cannot be evaluated, as the bodies do not face each other there, is halved
+/// towards the last one at which it can.
 void ConeSolver::solve_following(ReducedAnswer &answer) {
   constexpr int most_steps = 60;
   constexpr double tolerance = 1e-9;
-  Vector state = undeformed(contact_, scene_, answer.mu), last_x;
+  Vector state = undeformed(contact_, scene_, answer.mu), last_state, last_x;
   const bool accelerates = options_.method != OnlineMethod::kacanov;
   Anderson anderson(3);
   std::vector<Vector> images;
   int iterations = 0;
   double last_change = 0;
   for (int k = 0; k < most_steps; ++k) {
-    solve_pair(state, answer);
+    try {
+      solve_pair(state, answer);
+    } catch (const Error &) {
+      if (last_state.size() == 0 || k + 1 == most_steps) throw;
+      state = (state + last_state) / 2;
+      continue;
+    }
+    last_state = state;
     iterations += answer.iterations;
     images.push_back(model_.contact.trace * answer.u);
     const Vector change = images.back() - state;
