@@ -4,7 +4,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 packages=(g++ cmake ninja-build pkg-config petsc-dev slepc-dev libopenmpi-dev openmpi-bin libmetis-dev
   libhdf5-dev libhdf5-openmpi-dev libeigen3-dev libopenblas-dev libyaml-cpp-dev libgtest-dev
-  libmuparser-dev python3-numpy python3-scipy python3-matplotlib python3-h5py)
+  libmuparser-dev python3-numpy python3-scipy python3-matplotlib python3-h5py python3-jsonschema
+  python3-yaml)
 
 # Root in a container and more ranks than cores are both refused by Open MPI unless it is told.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1

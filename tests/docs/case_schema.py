@@ -48,12 +48,14 @@ def changed(case, path, value):
 
 
 RIGHT = [("materials/rubber/E", "15 GPa"), ("motion", ["0", "-depth"]), ("mesh/degree", 1),
-         ("contact/blocks/closed_ends", [True, "no"]), ("tests/strain/at", {}), ("free", ["indentation"]),
+         ("materials/rubber", {"at": "all", "lambda": "young", "mu": 4}), ("tests/strain/at", {}),
+         ("springs", {"foot": {"at": "bottom", "stiffness": "1 N/m"}}), ("free", ["indentation"]),
          ("options/nonlinear_method", "kacanov"), ("options/indentation", [0.02, 0.05])]
-WRONG = [("rbvi", None), ("rbvi", 2), ("contact", None), ("physics", "plane_strian"), ("springs", {}),
+WRONG = [("rbvi", None), ("rbvi", 2), ("contact", None), ("physics", "plane_strian"), ("spring", {}),
+         ("springs", {"foot": {"at": "bottom", "stifness": 1}}),
          ("mesh/built_in", "two_blokcs"), ("mesh/degree", 3), ("mesh/set", {"size": []}),
          ("parameters/shear/range", [0]), ("parameters/shear/range", 0.2), ("parameters/shear/default", None),
-         ("parameters/depth", 0.1), ("materials/rubber/nu", None), ("materials/rubber/rho", 1),
+         ("parameters/depth", 0.1), ("materials/rubber/at", None), ("materials/rubber/rho", 1),
          ("imposed/top/uz", 0), ("contact/blocks/at", None), ("contact/blocks/friction", 0.3),
          ("contact/blocks/against", {"wall": {}}), ("contact/blocks/kinematics", "finite"),
          ("contact/blocks/against", {"disk": {"center": [0, 0]}}), ("tests/strain/expect", None),
