@@ -2,9 +2,7 @@
 #include "rbvi/study/bench.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
-#include "rbvi/core/validity.hpp"
 #include "rbvi/fem/check_scene.hpp"
-#include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/model/print.hpp"
 #include "rbvi/model/training_samples.hpp"
@@ -141,8 +139,7 @@ void bench(const ToolOptions &options, const ReducedModel &model, int ranks) {
   check_problem(problem, model, options);
   const std::vector<Sample> snapshots =
       samples_at(problem, options, from_columns(model.made.trained_mu), "training").samples;
-  const std::vector<Mu> validation = parse_set(options.scene.parameters, options.valid);
-  check_set(options.scene, validation);
+  const std::vector<Mu> validation = validation_set(options, model);
   const Sweep sweep = samples_at(problem, options, validation, "validation");
   const std::vector<Sample> &truths = sweep.samples;
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <set>
 
 namespace rbvi {
 
@@ -123,6 +124,19 @@ ToolOptions adopt_model(ToolOptions options, const ReducedModel &model) {
   if (rank_of(PETSC_COMM_WORLD) == 0 && !line.empty())
     std::printf("The model is not of this case, and its own values are used: %s\n", line.c_str());
   return options;
+}
+
+std::vector<Mu> validation_set(const ToolOptions &options, const ReducedModel &model) {
+  std::vector<Mu> set = parse_set(options.scene.parameters, options.valid);
+  check_set(options.scene, set);
+  const std::vector<Mu> list = from_columns(model.made.trained_mu);
+  const std::set<Mu> trained(list.begin(), list.end());
+  const auto seen = std::ranges::count_if(set, [&](const Mu &mu) { return trained.contains(mu); });
+  if (seen > 0 && rank_of(PETSC_COMM_WORLD) == 0)
+    std::printf("warning: at %td of %zu validation parameters the model was trained, and its errors "
+                "there say nothing of others: give another -valid (of a random set another seed)\n",
+                seen, set.size());
+  return set;
 }
 
 void check_problem(const Problem &problem, const ReducedModel &model, const ToolOptions &options) {

@@ -2,9 +2,7 @@
 #include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
-#include "rbvi/core/validity.hpp"
 #include "rbvi/element/geometry.hpp"
-#include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/model/print.hpp"
 #include "rbvi/model/self_check.hpp"
@@ -213,8 +211,7 @@ void command_verify(const ToolOptions &given) {
   ReducedModel model = model_of_run(world, given);
   const ToolOptions options = adopt_model(given, model);
   check_eigen_options(options, EigenUse::constants);
-  const std::vector<Mu> validation = parse_set(options.scene.parameters, options.valid);
-  check_set(options.scene, validation);
+  const std::vector<Mu> validation = validation_set(options, model);
   const std::vector<Mu> training = from_columns(model.made.trained_mu);
   const Grouping grouping =
       group_ranks(world, options.scene, options.mesh, validation.size(), options.ranks_per_solve);

@@ -44,7 +44,10 @@ TEST_F(Cases, ANewOneIsRightAndIsNotWrittenTwice) {
                       {"check", "no case is named"}});
   output_of(rbvi(2, "offline -case block -train 'corners + random:3:1' -out model"));
   EXPECT_TRUE(contains(output_of(rbvi_online("model/model.h5 --mu 0.05,0.1,0.3")), "normal_force"));
-  output_of(rbvi(1, "verify -out model -valid random:2:1"));
+  const std::string trained = "warning: at 2 of 2 validation parameters the model was trained";
+  EXPECT_TRUE(contains(output_of(rbvi(2, "verify -out model -valid random:2:1")), trained));
+  EXPECT_TRUE(contains(output_of(rbvi(1, "bench -out model -valid random:2:1")), trained));
+  EXPECT_FALSE(contains(output_of(rbvi(2, "verify -out model -valid random:2:2")), "trained"));
 }
 
 TEST_F(Cases, ABodyThatNothingHoldsIsRefusedByEveryCommand) {

@@ -12,6 +12,10 @@ ReducedModel model_of_run(MPI_Comm world, const ToolOptions &options);
 /// one line that says where they differed. Throws bad_input for a model of another scene.
 ToolOptions adopt_model(ToolOptions options, const ReducedModel &model);
 
+/// The validation set of the options. Rank 0 warns of parameters at which the model was trained, as
+/// two random sets of one seed have. Throws bad_input.
+std::vector<Mu> validation_set(const ToolOptions &options, const ReducedModel &model);
+
 /// Throws bad_input unless mesh and scene of the problem are the model's, functions included.
 void check_problem(const Problem &problem, const ReducedModel &model, const ToolOptions &options);
 
