@@ -24,7 +24,7 @@ sys.path.insert(0, str(ROOT / "cases"))
 from figure_tools import BLUE, FLOOR, GREEN, GREY, ORANGE, PURPLE, np, plt
 
 DISK = "rigid_disk"
-NITSCHE = ["-variant", "nitsche"]
+NITSCHE = ("-variant", "nitsche")
 
 
 @dataclass(frozen=True)
