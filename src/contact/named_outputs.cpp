@@ -82,18 +82,15 @@ void check_outputs(const Scene &scene) {
                         "', which is no contact: the nearest is '" + nearest_name(at, names) + "'");
 }
 
-void add_named_outputs(const OutputPlaces &places, const FullMu &mu, const OutputDisplacements &u,
-                       const Vector &lambda, Outputs &outputs) {
-  const auto &[scene, contact, cells] = places;
+void add_named_outputs(const Scene &scene, const Contact &contact, const FullMu &mu,
+                       const OutputSources &sources, const Vector &lambda, Outputs &outputs) {
   outputs.named.clear();
   std::vector<std::optional<Traces>> traces(contact.interfaces.size());
-  std::optional<Vector> of_cells;
   for (std::size_t k = 0; k < scene.outputs.size(); ++k) {
     const OutputForm &form = scene.outputs[k];
     double value = 0;
     if (has_cells(form)) {
-      if (!of_cells) of_cells = u.of_cells();
-      value = cell_output(scene, static_cast<int>(k), mu, cells, *of_cells);
+      value = sources.of_cells(static_cast<int>(k));
     } else {
       OutputLines lines(form, mu);
       for (std::size_t i = 0; i < traces.size(); ++i) {
@@ -101,7 +98,7 @@ void add_named_outputs(const OutputPlaces &places, const FullMu &mu, const Outpu
         ContactInterface &interface = *contact.interfaces[i];
         if (!traces[i])
           traces[i] = traces_of(
-              interface.fields(mu, u.of_interface(i),
+              interface.fields(mu, sources.of_interface(i),
                                lambda.segment(contact.first_row[i], interface.dual().size())));
         add_pieces(*traces[i], scene.axisymmetric, lines);
       }

@@ -15,6 +15,23 @@ namespace {
 using OutputPart = OutputCells::Part;
 using Barycentric = std::array<double, 4>;
 
+int per_cell(const Scene &scene) {
+  return nodes_per_cell(scene.dim, scene.degree);
+}
+
+const int *nodes_of_cell(const Scene &scene, const OutputCells &cells, int cell) {
+  return cells.cells.data() + Index{cell} * per_cell(scene);
+}
+
+/// Not mapped.
+Cell reference_cell(const Scene &scene, const OutputCells &cells, int number) {
+  Cell cell{scene.dim, {}, {}};
+  for (int i = 0; i <= scene.dim; ++i)
+    for (Index k = 0; k < cells.points.cols(); ++k)
+      cell.reference[i][k] = cells.points(nodes_of_cell(scene, cells, number)[i], k);
+  return cell;
+}
+
 /// Cells with a displacement at one mu.
 struct OutputState {
   const Scene &scene;
@@ -22,13 +39,9 @@ struct OutputState {
   const OutputCells &cells;
   const Vector &u;
 
-  int per_cell() const { return nodes_per_cell(scene.dim, scene.degree); }
-  const int *nodes(int cell) const { return cells.cells.data() + Index{cell} * per_cell(); }
+  const int *nodes(int cell) const { return nodes_of_cell(scene, cells, cell); }
   Cell cell(int number) const {
-    Cell cell{scene.dim, {}, {}};
-    for (int i = 0; i <= scene.dim; ++i)
-      for (Index k = 0; k < cells.points.cols(); ++k)
-        cell.reference[i][k] = cells.points(nodes(number)[i], k);
+    Cell cell = reference_cell(scene, cells, number);
     map_cell(scene, mu, cell);
     return cell;
   }
@@ -47,7 +60,7 @@ struct OutputState {
   }
   DisplacedCell displaced(int number) const {
     DisplacedCell result{cell(number), cells.materials.empty() ? 0 : cells.materials[number], {}};
-    for (int i = 0; i < per_cell(); ++i)
+    for (int i = 0; i < per_cell(scene); ++i)
       result.u[i] = at_node(nodes(number)[i]);
     return result;
   }
@@ -131,50 +144,83 @@ void add_point(const OutputState &state, const OutputPart &part, const Point &po
             [](const OutputFields &) { return 1.0; });
 }
 
+/// Of a, then of f.
+const Term &term_of(const Scene &scene, int number) {
+  return number < std::ssize(scene.a) ? scene.a[number] : scene.f[number - std::ssize(scene.a)];
+}
+
 /// Values of a kernel of a or f on a part, and what belongs to its rows.
 struct LocalForm {
   std::vector<double> values;
   std::vector<int> nodes; ///< positions in the cell
 };
 
-LocalForm local_form(const OutputState &state, const OutputPart &part, const Term &term,
-                     bool bilinear) {
-  const Cell cell = state.cell(part.cell);
+LocalForm local_form(const Scene &scene, const FullMu &mu, const OutputCells &cells,
+                     const OutputPart &part, bool bilinear) {
+  const Term &term = term_of(scene, part.term);
+  Cell cell = reference_cell(scene, cells, part.cell);
+  if (!term.theta) map_cell(scene, mu, cell);
   LocalForm local;
   if (part.facet < 0)
-    for (int i = 0; i < state.per_cell(); ++i)
+    for (int i = 0; i < per_cell(scene); ++i)
       local.nodes.push_back(i);
   else
-    local.nodes = facet_nodes(2, state.scene.degree, part.facet);
+    local.nodes = facet_nodes(2, scene.degree, part.facet);
   Cell of_kernel = part.facet < 0 ? cell : facet_cell(cell, part.facet);
   if (term.theta) of_kernel.mapped = of_kernel.reference;
-  const std::size_t rows = local.nodes.size() * static_cast<std::size_t>(state.scene.components);
+  const std::size_t rows = local.nodes.size() * static_cast<std::size_t>(scene.components);
   local.values.resize(bilinear ? rows * rows : rows);
-  term.form.kernel(term.theta ? FullMu{} : state.mu, of_kernel, local.values.data());
+  term.form.kernel(term.theta ? FullMu{} : mu, of_kernel, local.values.data());
   return local;
 }
 
-/// a(u, l) or -f(l) on a part, without the factor of the term.
-double tested(const OutputState &state, const OutputPart &part, const Point &direction) {
-  const auto bilinear = part.term < std::ssize(state.scene.a);
-  const Term &term =
-      bilinear ? state.scene.a[part.term] : state.scene.f[part.term - std::ssize(state.scene.a)];
-  const LocalForm local = local_form(state, part, term, bilinear);
-  const auto components = static_cast<std::size_t>(state.scene.components);
+/// a(u, l) or -f(l) on a part, without the factor of the term: row . u + given.
+struct Tested {
+  std::vector<std::pair<Index, double>> row; ///< by positions in u
+  double given = 0;
+};
+
+Tested tested(const Scene &scene, const FullMu &mu, const OutputCells &cells,
+              const OutputPart &part, const Point &direction) {
+  const bool bilinear = part.term < std::ssize(scene.a);
+  const LocalForm local = local_form(scene, mu, cells, part, bilinear);
+  const auto components = static_cast<std::size_t>(scene.components);
   const std::size_t rows = local.nodes.size() * components;
-  double sum = 0;
+  Tested result;
+  for (std::size_t j = 0; bilinear && j < rows; ++j)
+    result.row.emplace_back(
+        Index{nodes_of_cell(scene, cells, part.cell)[local.nodes[j / components]]} *
+                scene.components +
+            static_cast<Index>(j % components),
+        0);
   for (std::size_t i = 0; i < rows; ++i) {
     const int held = (part.held >> local.nodes[i / components]) & 1;
     const double l = held * direction[i % components];
     if (l == 0) continue;
-    if (!bilinear) sum -= l * local.values[i];
+    if (!bilinear) result.given -= l * local.values[i];
     for (std::size_t j = 0; bilinear && j < rows; ++j)
-      sum += l * local.values[i * rows + j] *
-             state.u[Index{state.nodes(part.cell)[local.nodes[j / components]]} *
-                         state.scene.components +
-                     static_cast<Index>(j % components)];
+      result.row[j].second += l * local.values[i * rows + j];
   }
-  return sum * (term.theta ? coefficient_of(term, state.mu) : 1);
+  return result;
+}
+
+double reaction(const OutputState &state, const OutputForm &form,
+                std::span<const OutputPart> parts) {
+  double force = 0;
+  for (const OutputPart &part : parts) {
+    const auto [row, given] = tested(state.scene, state.mu, state.cells, part, form.vector);
+    double sum = given;
+    for (const auto &[dof, entry] : row)
+      sum += entry * state.u[dof];
+    const Term &term = term_of(state.scene, part.term);
+    force += sum * (term.theta ? coefficient_of(term, state.mu) : 1);
+  }
+  return force;
+}
+
+std::span<const OutputPart> parts_of(const OutputCells &cells, int output) {
+  const auto found = std::ranges::equal_range(cells.parts, output, {}, &OutputPart::output);
+  return {found.begin(), found.end()};
 }
 
 /// The integral of direction . u over a facet of the reference domain, and its size.
@@ -231,20 +277,47 @@ double output_value(const OutputForm &form, const OutputSums &sums, double image
   }
 }
 
+std::optional<SeparatedReaction> separated_reaction(const Scene &scene, int output,
+                                                    const OutputCells &cells) {
+  const OutputForm &form = scene.outputs[output];
+  if (form.kind != OutputForm::Kind::reaction) return std::nullopt;
+  const std::span<const OutputPart> parts = parts_of(cells, output);
+  SeparatedReaction result;
+  for (const OutputPart &part : parts) {
+    if (!term_of(scene, part.term).theta) return std::nullopt;
+    if (std::ranges::find(result.terms, part.term) == result.terms.end())
+      result.terms.push_back(part.term);
+  }
+  result.rows = Matrix::Zero(std::ssize(result.terms), cells.points.rows() * scene.components);
+  result.given = Vector::Zero(result.rows.rows());
+  for (const OutputPart &part : parts) {
+    const Index q = std::ranges::find(result.terms, part.term) - result.terms.begin();
+    const Tested of_part = tested(scene, {}, cells, part, form.vector);
+    result.given[q] += of_part.given;
+    for (const auto &[dof, entry] : of_part.row)
+      result.rows(q, dof) += entry;
+  }
+  return result;
+}
+
+double reaction_value(const SeparatedReaction &reaction, const Scene &scene, const FullMu &mu,
+                      const Vector &of_terms) {
+  double force = 0;
+  for (Index q = 0; q < of_terms.size(); ++q)
+    force +=
+        coefficient_of(term_of(scene, reaction.terms[q]), mu) * (of_terms[q] + reaction.given[q]);
+  return scene.mirror_images * force;
+}
+
 double cell_output(const Scene &scene, int output, const FullMu &mu, const OutputCells &cells,
                    const Vector &u) {
   const OutputState state{scene, mu, cells, u};
   const OutputForm &form = scene.outputs[output];
-  const auto found = std::ranges::equal_range(cells.parts, output, {}, &OutputPart::output);
-  const std::span<const OutputPart> parts(found.begin(), found.end());
+  const std::span<const OutputPart> parts = parts_of(cells, output);
   if (form.kind == OutputForm::Kind::spring)
     return scene.mirror_images * spring_force(state, form, parts);
-  if (form.kind == OutputForm::Kind::reaction) {
-    double force = 0;
-    for (const OutputPart &part : parts)
-      force += tested(state, part, form.vector);
-    return scene.mirror_images * force;
-  }
+  if (form.kind == OutputForm::Kind::reaction)
+    return scene.mirror_images * reaction(state, form, parts);
   OutputLines lines(form, mu);
   const bool extreme = form.kind == OutputForm::Kind::min || form.kind == OutputForm::Kind::max;
   for (const OutputPart &part : parts) {

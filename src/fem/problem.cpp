@@ -210,10 +210,15 @@ void add_named_outputs(const Problem &problem, const FullMu &mu, const Vector &u
           u.segment(nodes[k] * components, components);
     return own;
   };
-  add_named_outputs({problem.scene(), problem.contact(), problem.output_cells()}, mu,
-                    {[&](std::size_t i) { return at(problem.places().natural_nodes[i]); },
-                     [&] { return at(problem.output_cells().nodes); }},
-                    lambda, outputs);
+  std::optional<Vector> at_cells;
+  const auto of_cells = [&](int output) {
+    if (!at_cells) at_cells = at(problem.output_cells().nodes);
+    return cell_output(problem.scene(), output, mu, problem.output_cells(), *at_cells);
+  };
+  add_named_outputs(
+      problem.scene(), problem.contact(), mu,
+      {[&](std::size_t i) { return at(problem.places().natural_nodes[i]); }, of_cells}, lambda,
+      outputs);
 }
 
 Mat Problem::v_product() {

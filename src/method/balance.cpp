@@ -3,6 +3,7 @@
 #include "rbvi/method/anderson.hpp"
 #include "rbvi/method/nonnegative_qp.hpp"
 
+#include <Eigen/LU>
 #include <Eigen/SVD>
 
 #include <algorithm>
@@ -100,14 +101,59 @@ Vector forces_on_motions(const NodeLaws &laws, const Matrix &held, const Vector 
   return terms + held.cwiseAbs().transpose() * sizes;
 }
 
-Balance find_balance(Vector beta, const std::function<SpringState(const Vector &beta)> &lengths) {
+namespace {
+
+using Lengths = std::function<SpringState(const Vector &beta)>;
+
+/// Whether the excess is as small as can be.
+bool balances(const Balance &at, double scale, double tolerance) {
+  constexpr double round_off = 1e-10;
+  const double resolved =
+      std::numeric_limits<double>::epsilon() * at.beta.norm(); // of lengths - beta
+  return resolved <= round_off * scale && at.excess.norm() <= tolerance * scale;
+}
+
+/// Steps of Newton's method where slopes are known, else of Anderson's acceleration.
+class Steps {
+public:
+  explicit Steps(Index motions) : anderson_(motions) {}
+  void forget() {
+    anderson_ = Anderson(excess_.size());
+    images_.clear();
+  }
+  Vector next(const SpringState &state, const Vector &beta, const Vector &excess) {
+    constexpr double longest = 1e6; // over the excess
+    constexpr int most_rises = 4;   // of the excess, after which slopes are not followed
+    if (excess_.size() > 0 && excess.norm() > excess_.norm()) ++rises_;
+    excess_ = excess;
+    images_.push_back(state.lengths);
+    const Vector shares = anderson_.combine(excess);
+    if (std::ssize(images_) > shares.size()) images_.erase(images_.begin());
+    const Eigen::FullPivLU<Matrix> slope(state.slope);
+    if (state.slope.size() > 0 && slope.isInvertible() && rises_ < most_rises) {
+      const Vector step = -slope.solve(excess);
+      if (step.norm() <= longest * excess.norm()) return step;
+    }
+    Vector step = -beta;
+    for (Index j = 0; j < shares.size(); ++j)
+      step += shares[j] * images_[j];
+    if (step.norm() > longest * excess.norm()) step *= longest * excess.norm() / step.norm();
+    return step;
+  }
+
+private:
+  Anderson anderson_;
+  std::vector<Vector> images_;
+  Vector excess_;
+  int rises_ = 0;
+};
+
+Balance accelerated(Vector beta, const Lengths &lengths) {
   constexpr int most_solves = 100;
   constexpr double tolerance = 1e-12, round_off = 1e-10, farthest = 1e10;
-  // Changes of the excess, and jumps, over it.
-  constexpr double constant = 1e-6, weak = 0.04, longest = 1e6;
+  constexpr double constant = 1e-6, weak = 0.04; // changes of the excess, over it
   Balance result;
-  Anderson anderson(beta.size());
-  std::vector<Vector> images;
+  Steps steps(beta.size());
   Vector last, tried_at;
   double step = 1, least = 0, tried = std::numeric_limits<double>::infinity();
   while (result.solves < most_solves) {
@@ -123,10 +169,7 @@ Balance find_balance(Vector beta, const std::function<SpringState(const Vector &
     const double change = last.size() > 0 ? (result.excess - last).norm() : size;
     const bool hardly = size > 0 && change <= weak * size;
     bool flies = hardly && !(step == 1 && change > constant * size && size < 0.5 * tried);
-    const double resolved =
-        std::numeric_limits<double>::epsilon() * beta.norm(); // of lengths - beta
-    result.converged = !flies && resolved <= round_off * state.scale &&
-                       size <= (stalls ? round_off : tolerance) * state.scale;
+    result.converged = !flies && balances(result, state.scale, stalls ? round_off : tolerance);
     result.flies = !(step < farthest);
     if (result.converged || result.flies) return result;
     least = result.solves == 1 ? size : std::min(least, size);
@@ -139,8 +182,7 @@ Balance find_balance(Vector beta, const std::function<SpringState(const Vector &
     step = flies ? 4 * step : 1;
     last = result.excess;
     if (flies) {
-      anderson = Anderson(beta.size());
-      images.clear();
+      steps.forget();
       beta += step * result.excess;
       continue;
     }
@@ -148,16 +190,55 @@ Balance find_balance(Vector beta, const std::function<SpringState(const Vector &
       tried = size;
       tried_at = beta;
     }
-    images.push_back(state.lengths);
-    const Vector shares = anderson.combine(result.excess);
-    if (std::ssize(images) > shares.size()) images.erase(images.begin());
-    Vector jump = -beta;
-    for (Index j = 0; j < shares.size(); ++j)
-      jump += shares[j] * images[j];
-    if (jump.norm() > longest * size) jump *= longest * size / jump.norm();
-    beta += jump;
+    beta += steps.next(state, beta, result.excess);
   }
   return result;
+}
+
+/// Newton's method with slopes by differences, its steps halved until the excess falls.
+Balance by_differences(Balance from, const Lengths &lengths) {
+  constexpr int most_steps = 30;
+  constexpr double tolerance = 1e-10, difference = 1e-7, shortest = 1e-3;
+  double scale = 0;
+  const auto excess_at = [&](const Vector &beta) -> Vector {
+    const SpringState state = lengths(beta);
+    ++from.solves;
+    scale = state.scale;
+    return state.lengths - beta;
+  };
+  from.excess = excess_at(from.beta);
+  for (int k = 0; k < most_steps && !from.converged; ++k) {
+    const double size = from.excess.norm(), step = difference * scale;
+    Matrix slope(from.beta.size(), from.beta.size());
+    for (Index j = 0; j < slope.cols(); ++j) {
+      Vector moved = from.beta;
+      moved[j] += step;
+      slope.col(j) = (excess_at(moved) - from.excess) / step;
+    }
+    const Vector newton = -slope.fullPivLu().solve(from.excess);
+    if (!newton.allFinite()) break;
+    const auto falls = [&](double part) {
+      const Vector beta = from.beta + part * newton, excess = excess_at(beta);
+      if (!(excess.norm() <= (1 - 0.1 * part) * size)) return false;
+      from.beta = beta;
+      from.excess = excess;
+      return true;
+    };
+    double part = 1;
+    while (!falls(part) && part > shortest)
+      part /= 2;
+    if (part <= shortest) break;
+    from.converged = balances(from, scale, tolerance);
+  }
+  return from;
+}
+
+} // namespace
+
+Balance find_balance(Vector beta, const Lengths &lengths) {
+  Balance result = accelerated(std::move(beta), lengths);
+  if (result.converged || result.flies) return result;
+  return by_differences(std::move(result), lengths);
 }
 
 } // namespace rbvi

@@ -8,10 +8,22 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 #include <string>
 
 namespace rbvi {
+
+namespace friction {
+
+/// What problems that differ in q alone hand on.
+struct Kept {
+  std::set<std::string> known;  ///< keys of active sets on the way to answers to the last q
+  std::optional<System> system; ///< in the plane, the last one of the laws themselves
+  std::string key;              ///< of its sets
+};
+
+} // namespace friction
 
 namespace {
 
@@ -77,11 +89,11 @@ FrictionResult without_friction(LazyColumns &h, const Vector &q, const Laws &law
 
 class Solver {
 public:
-  /// `known`: keys of active sets at which it ends; those that it comes to are added.
+  /// It ends at sets that are known; those that it comes to are added.
   Solver(LazyColumns &h, const Vector &q, const Laws &laws, const FrictionOptions &options,
-         std::set<std::string> &known)
-      : h_(h), q_(q), laws_(laws), options_(options), known_(known),
-        best_sets_(laws.nodes, laws.dim), systems_left_(options.max_iterations) {}
+         Kept &kept)
+      : h_(h), q_(q), laws_(laws), options_(options), kept_(kept), best_sets_(laws.nodes, laws.dim),
+        systems_left_(options.max_iterations) {}
 
   FrictionAnswer run(const Vector &start, bool by_rule) {
     Outcome outcome;
@@ -102,7 +114,7 @@ public:
       outcome = laws_.jump() && laws_.coefficient.isZero(0) ? settle_contact(std::move(point))
                                                             : backup(std::move(point));
     }
-    known_.merge(visited_);
+    kept_.known.merge(visited_);
     return outcome == Outcome::known ? FrictionAnswer() : finish(outcome);
   }
 
@@ -156,17 +168,19 @@ private:
   /// directions of slip vary continuously: there the sets alone do not tell that a step returns.
   Outcome newton_from(const Laws &laws, ActiveSets sets, State &point) {
     pivoting::Policy<std::string, double> policy(/*patience=*/10);
+    const bool own = &laws == &laws_;
     for (;;) {
+      std::string key;
       if (laws.dim == 2) {
-        const std::string key = sets.key();
-        if (&laws == &laws_ && known_.contains(key)) return Outcome::known;
-        if (&laws == &laws_) visited_.insert(key);
+        key = sets.key();
+        if (own && kept_.known.contains(key)) return Outcome::known;
+        if (own) visited_.insert(key);
         if (policy.returns(key)) return Outcome::cycles;
       }
       if (systems_left_ <= 0) return Outcome::limit;
       --systems_left_;
       h_.require(sets.support(laws));
-      const Solved solved = newton_step(h_, q_, laws, sets, point);
+      const Solved solved = step(laws, sets, std::move(key), point);
       if (solved == Solved::indefinite) return Outcome::indefinite;
       if (solved == Solved::singular) return Outcome::cycles;
       Verdict verdict = judge(diagonal(), laws, point, sets, options_.tolerance);
@@ -175,6 +189,16 @@ private:
       if (policy.is_lost(verdict.residual)) return Outcome::cycles;
       sets = std::move(verdict.next);
     }
+  }
+
+  /// `key`: of the sets, in the plane.
+  Solved step(const Laws &laws, const ActiveSets &sets, std::string key, State &point) {
+    if (&laws != &laws_ || key.empty()) return System(h_, laws, sets).step(h_, q_, laws, point);
+    if (!kept_.system || kept_.key != key) {
+      kept_.system.emplace(h_, laws, sets);
+      kept_.key = std::move(key);
+    }
+    return kept_.system->step(h_, q_, laws, point);
   }
 
   /// The sets are right and the violations below tolerance; or as small as round-off lets them be:
@@ -262,6 +286,7 @@ private:
     result.converged = outcome == Outcome::converged;
     result.has_others = result.converged && best_.negative && laws_.dim == 2 && !laws_.jump();
     best_.x = laws_.feasible(std::move(best_.x));
+    if (!result.converged || kept_.key != best_sets_.key()) kept_.system.reset();
     if (!result.converged) {
       best_ = evaluate(h_, q_, std::move(best_.x));
       result.residual = judge(diagonal(), laws_, best_, best_sets_, options_.tolerance).residual;
@@ -298,8 +323,9 @@ private:
   const Vector &q_;
   const Laws &laws_;
   const FrictionOptions &options_;
-  std::set<std::string> &known_, visited_; ///< by the laws themselves
-  State best_;                             ///< the solution, or the point of the least residual
+  Kept &kept_;
+  std::set<std::string> visited_; ///< by the laws themselves
+  State best_;                    ///< the solution, or the point of the least residual
   ActiveSets best_sets_;
   FrictionResult result_;
   int systems_left_;   ///< linear systems
@@ -318,7 +344,7 @@ struct FrictionSolver::Parts {
     check(q, given, start);
     const Vector right = order.inwards(q), from = order.inwards(start);
     FrictionAnswer result = given.friction()
-                                ? Solver(h, right, laws, options, known).run(from, rule)
+                                ? Solver(h, right, laws, options, kept).run(from, rule)
                                 : FrictionAnswer{without_friction(h, right, laws, from, options)};
     for (Vector *part : {&result.x, &result.w, &result.start})
       *part = order.outwards(*part);
@@ -333,7 +359,7 @@ struct FrictionSolver::Parts {
   Vector q; ///< of the last answer
   FrictionOptions options;
   bool by_rule = false;
-  std::set<std::string> known; ///< ActiveSets::key() on the way to answers to q
+  Kept kept;
 };
 
 FrictionSolver::FrictionSolver(ColumnSource columns, const NodeLaws &laws)
@@ -346,12 +372,22 @@ FrictionAnswer FrictionSolver::answer(const Vector &q, const Vector &start, bool
   parts_->q = q;
   parts_->options = options;
   parts_->by_rule = by_rule;
-  parts_->known.clear();
+  parts_->kept.known.clear();
   return parts_->run(start, by_rule);
 }
 
 FrictionAnswer FrictionSolver::another(const Vector &start, bool by_rule) {
   return parts_->run(start, by_rule);
+}
+
+Matrix FrictionSolver::change(const Matrix &of_q) const {
+  const std::optional<System> &system = parts_->kept.system;
+  if (!system) return {};
+  Matrix result(of_q.rows(), of_q.cols());
+  for (Index k = 0; k < of_q.cols(); ++k)
+    result.col(k) = parts_->order.outwards(
+        system->change(parts_->laws, parts_->order.inwards(Vector(of_q.col(k)))));
+  return result;
 }
 
 const NodeLaws &FrictionSolver::laws() const {

@@ -50,7 +50,7 @@ bool minimise(LazyColumns &h, const Vector &q, const Laws &frozen, double tolera
     sets = std::move(verdict.next);
     h.require(sets.support(frozen));
     State aim;
-    if (newton_step(h, q, frozen, sets, aim) != Solved::yes) return false;
+    if (System(h, frozen, sets).step(h, q, frozen, aim) != Solved::yes) return false;
     aim = evaluate(h, q, frozen.feasible(std::move(aim.x)));
     const double part = shorten(point, aim);
     if (part == 1) {

@@ -14,65 +14,10 @@ double tangential_diagonal(const Vector &diagonal, const Laws &laws, Index i) {
   return diagonal.segment(laws.tangent(i), laws.dim - 1).sum() / (laws.dim - 1);
 }
 
-/// What scales the diagonal of H to one for each unknown.
-Vector units(const Vector &diagonal, const Laws &laws, const std::vector<Unknown> &list) {
-  return Vector::NullaryExpr(std::ssize(list), [&](Index k) {
-    const Unknown &u = list[k];
-    return 1 / std::sqrt(u.first < laws.nodes ? diagonal[u.first]
-                                              : tangential_diagonal(diagonal, laws, u.node));
-  });
-}
-
-/// The scaled matrix of the linear system, in the order of the unknowns.
-Matrix assemble(const LazyColumns &h, const Laws &laws, const ActiveSets &sets,
-                const std::vector<Unknown> &list, const Vector &unit) {
-  const Index count = static_cast<Index>(list.size());
-  Matrix matrix(count, count);
-  std::vector<Index> rows, turns; // turns: rows of two entries
-  for (Index k = 0; k < count; ++k) {
-    rows.push_back(list[k].first);
-    if (list[k].b != 0) turns.push_back(k);
-  }
-  Vector column;
-  for (Index k = 0; k < count; ++k) {
-    const Unknown &u = list[k];
-    column = u.a * h.column(u.first);
-    if (u.b != 0) column += u.b * h.column(u.second);
-    if (u.slope > 0)
-      for (int j = 0; j < laws.dim - 1; ++j)
-        column += u.slope * sets.direction(j, u.node) * h.column(laws.tangent(u.node) + j);
-    auto of_rows = matrix.col(k);
-    of_rows = column(rows);
-    for (const Index r : turns)
-      of_rows[r] = list[r].a * column[list[r].first] + list[r].b * column[list[r].second];
-    of_rows[k] += u.curvature;
-    of_rows.array() *= unit[k] * unit.array();
-  }
-  return matrix;
-}
-
 /// Whether its determinant is negative.
 bool is_negative(const Eigen::PartialPivLU<Matrix> &lu) {
   const bool odd = (lu.matrixLU().diagonal().array() < 0).count() % 2 == 1;
   return odd != (lu.permutationP().determinant() < 0);
-}
-
-/// With one step of refinement. Empty if the matrix is singular or, where it is symmetric, not
-/// positive definite. `negative`: of the determinant.
-Vector solve(const Matrix &matrix, const Vector &right, bool symmetric, bool &negative) {
-  const auto refined = [&](const auto &solved) {
-    Vector u = solved(right);
-    u -= solved(matrix * u - right);
-    return u.allFinite() ? u : Vector();
-  };
-  if (!symmetric) {
-    const Eigen::PartialPivLU<Matrix> lu(matrix);
-    negative = is_negative(lu);
-    return refined([&](const Vector &r) -> Vector { return lu.solve(r); });
-  }
-  Matrix lower = matrix;
-  if (!cholesky_in_place(lower)) return {};
-  return refined([&](const Vector &r) { return cholesky_solve(lower, r); });
 }
 
 /// The verdict on a point, node by node.
@@ -344,31 +289,92 @@ Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, cons
   return judge(diagonal, laws, point, sets, tolerance, largest_scaled(diagonal, point.x));
 }
 
-Solved newton_step(const LazyColumns &h, const Vector &q, const Laws &laws, const ActiveSets &sets,
-                   State &point) {
-  for (const Index j : sets.support(laws))
-    if (!(h.diagonal(j) > 0)) return Solved::indefinite;
-  const std::vector<Unknown> list = unknowns(laws, sets);
-  const Vector unit = units(diagonal_of(h, q.size()), laws, list);
-  Vector x = fixed_part(laws, sets);
+System::System(const LazyColumns &h, const Laws &laws, ActiveSets sets) : sets_(std::move(sets)) {
+  for (const Index j : sets_.support(laws))
+    if (!(h.diagonal(j) > 0)) {
+      solved_ = Solved::indefinite;
+      return;
+    }
+  list_ = unknowns(laws, sets_);
+  symmetric_ = std::ranges::all_of(list_, [](const Unknown &u) { return u.slope == 0; });
+  if (list_.empty()) return;
+  const Vector diagonal = diagonal_of(h, laws.nodes * laws.dim);
+  unit_ = Vector::NullaryExpr(std::ssize(list_), [&](Index k) {
+    const Unknown &u = list_[k];
+    return 1 / std::sqrt(u.first < laws.nodes ? diagonal[u.first]
+                                              : tangential_diagonal(diagonal, laws, u.node));
+  });
+  assemble(h, laws);
+  if (!symmetric_) {
+    lu_.compute(matrix_);
+    negative_ = is_negative(lu_);
+    return;
+  }
+  lower_ = matrix_;
+  if (!cholesky_in_place(lower_)) solved_ = Solved::indefinite;
+}
+
+void System::assemble(const LazyColumns &h, const Laws &laws) {
+  const Index count = std::ssize(list_);
+  matrix_.resize(count, count);
+  std::vector<Index> rows, turns; // turns: rows of two entries
+  for (Index k = 0; k < count; ++k) {
+    rows.push_back(list_[k].first);
+    if (list_[k].b != 0) turns.push_back(k);
+  }
+  Vector column;
+  for (Index k = 0; k < count; ++k) {
+    const Unknown &u = list_[k];
+    column = u.a * h.column(u.first);
+    if (u.b != 0) column += u.b * h.column(u.second);
+    if (u.slope > 0)
+      for (int j = 0; j < laws.dim - 1; ++j)
+        column += u.slope * sets_.direction(j, u.node) * h.column(laws.tangent(u.node) + j);
+    auto of_rows = matrix_.col(k);
+    of_rows = column(rows);
+    for (const Index r : turns)
+      of_rows[r] = list_[r].a * column[list_[r].first] + list_[r].b * column[list_[r].second];
+    of_rows[k] += u.curvature;
+    of_rows.array() *= unit_[k] * unit_.array();
+  }
+}
+
+Vector System::right_side(const Vector &y) const {
+  return Vector::NullaryExpr(unit_.size(), [&](Index k) {
+    const Unknown &u = list_[k];
+    return -unit_[k] * (u.a * y[u.first] + u.b * y[u.second]);
+  });
+}
+
+Vector System::solve(const Vector &right) const {
+  if (right.size() == 0) return right;
+  const auto once = [&](const Vector &r) -> Vector {
+    return symmetric_ ? cholesky_solve(lower_, r) : Vector(lu_.solve(r));
+  };
+  Vector u = once(right);
+  u -= once(matrix_ * u - right);
+  return u.cwiseProduct(unit_);
+}
+
+Solved System::step(const LazyColumns &h, const Vector &q, const Laws &laws, State &point) const {
+  if (solved_ != Solved::yes) return solved_;
+  Vector x = fixed_part(laws, sets_);
   Vector start = q;
   for (Index j = laws.nodes; j < x.size(); ++j)
     if (x[j] != 0) start += x[j] * h.column(j);
-  Vector right(static_cast<Index>(list.size()));
-  bool symmetric = true;
-  for (Index k = 0; k < right.size(); ++k) {
-    const Unknown &u = list[k];
-    right[k] = -unit[k] * (u.a * start[u.first] + u.b * start[u.second]);
-    symmetric = symmetric && u.slope == 0;
-  }
-  Vector u;
-  bool negative = false;
-  if (right.size() > 0) u = solve(assemble(h, laws, sets, list, unit), right, symmetric, negative);
-  if (u.size() != right.size()) return symmetric ? Solved::indefinite : Solved::singular;
-  u.array() *= unit.array();
-  point = evaluate(h, q, expand(laws, sets, list, u, std::move(x)));
-  point.negative = negative;
+  const Vector u = solve(right_side(start));
+  if (!u.allFinite()) return symmetric_ ? Solved::indefinite : Solved::singular;
+  point = evaluate(h, q, expand(laws, sets_, list_, u, std::move(x)));
+  point.negative = negative_;
   return Solved::yes;
+}
+
+Matrix System::change(const Laws &laws, const Matrix &of_q) const {
+  Matrix result(of_q.rows(), of_q.cols());
+  for (Index k = 0; k < of_q.cols(); ++k)
+    result.col(k) =
+        expand(laws, sets_, list_, solve(right_side(of_q.col(k))), Vector::Zero(of_q.rows()));
+  return result;
 }
 
 } // namespace rbvi::friction

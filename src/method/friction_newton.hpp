@@ -108,8 +108,30 @@ Vector expand(const Laws &laws, const ActiveSets &sets, const std::vector<Unknow
 /// With friction a singular matrix need not be a fault of H.
 enum class Solved { yes, singular, indefinite };
 
-/// Solves the linear system of the sets, whose columns are there; otherwise `point` is unchanged.
-Solved newton_step(const LazyColumns &h, const Vector &q, const Laws &laws, const ActiveSets &sets,
-                   State &point);
+/// The linear system of active sets, factorised.
+class System {
+public:
+  /// The columns of the support of the sets are there.
+  System(const LazyColumns &h, const Laws &laws, ActiveSets sets);
+  /// The point that solves it; `point` is unchanged where none does.
+  Solved step(const LazyColumns &h, const Vector &q, const Laws &laws, State &point) const;
+  /// In the plane: changes of x by those of q (columns), while the sets stay.
+  Matrix change(const Laws &laws, const Matrix &of_q) const;
+
+private:
+  void assemble(const LazyColumns &h, const Laws &laws);
+  /// -(a y[first] + b y[second]) of each row, in its unit.
+  Vector right_side(const Vector &y) const;
+  /// Of the unknowns, with one step of refinement.
+  Vector solve(const Vector &right) const;
+
+  ActiveSets sets_;
+  std::vector<Unknown> list_;
+  Vector unit_; ///< what scales the diagonal of H to one
+  Matrix matrix_, lower_;
+  Eigen::PartialPivLU<Matrix> lu_; ///< where it is not symmetric
+  bool symmetric_ = true, negative_ = false;
+  Solved solved_ = Solved::yes;
+};
 
 } // namespace rbvi::friction

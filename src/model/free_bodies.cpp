@@ -62,7 +62,8 @@ ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, con
     // Their lengths are beta and what forces leave, as A_N^-1 springs are rigid motions.
     return SpringState{
         beta + motions.load - motions.held.transpose() * answer.lambda,
-        forces_on_motions(motions.laws, motions.held, motions.terms, answer.lambda).maxCoeff()};
+        forces_on_motions(motions.laws, motions.held, motions.terms, answer.lambda).maxCoeff(),
+        motions.slope.size() > 0 ? Matrix(-motions.held.transpose() * motions.slope) : Matrix()};
   });
   if (balance.flies) throw failure(unheld);
   if (!balance.converged)

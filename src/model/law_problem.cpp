@@ -34,9 +34,8 @@ const LawAtMu &LawProblem::at(const FullMu &mu, ReducedAnswer &answer, const Vec
     mu_ = mu;
   }
   if (beta.size() > 0) {
-    const Vector forces = theta_.cwiseProduct(beta);
-    law_.q = q_ - answer.motions->held * forces;
-    law_.load = load_ + springs_ * forces;
+    law_.q = q_ + law_.by_beta * beta;
+    law_.load = load_ + springs_ * theta_.cwiseProduct(beta);
   }
   return law_;
 }
@@ -64,6 +63,7 @@ void LawProblem::set_springs(ReducedAnswer &answer) {
   const Matrix motions = at_mu_.free_motions();
   answer.motions = free_motions_at(at_mu_, motions, contact_->times(motions), law_.laws);
   theta_ = spring_coefficients(model_, scene_, answer.mu);
+  law_.by_beta = -answer.motions->held * theta_.asDiagonal();
   springs_ = at_mu_.half_response(model_.body.springs);
   q_ = law_.q;
   load_ = law_.load;

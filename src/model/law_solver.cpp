@@ -30,6 +30,7 @@ void NodeLawSolver::solve_at_nodes(const LawAtMu &law, ReducedAnswer &answer) {
   if (!found.converged || !(found.residual <= largest_left))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: " + found.reason);
+  if (answer.motions) answer.motions->slope = friction.change(law.by_beta);
   if (looks_for_others_ && !continues) answer.to_other = distance_to_other_answer(friction, found);
   if (found.has_others) answer.to_other = std::max(answer.to_other, least_distance);
   answer.energy = 0.5 * (found.x.dot(found.w - law.q) - law.load.squaredNorm());

@@ -80,7 +80,7 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, const QueryOptions &option
 OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOptions &given)
     : model_(model), scene_(with_imposed_loads(std::move(scene))),
       imposed_energy_(rbvi::imposed_energy(scene_)), contact_(contact_of(model, scene_)),
-      dual_basis_(model.contact.dual_basis.sparseView()) {
+      dual_basis_(model.contact.dual_basis.sparseView()), cell_outputs_(model.outputs, scene_) {
   check_terms_of(model.body.a, scene_.a, scene_.parameters, "a");
   check_terms_of(model.body.f, scene_.f, scene_.parameters, "f");
   check_imposed_by(model, scene_);
@@ -138,17 +138,11 @@ Vector OnlineSolver::contact_gap(const ReducedAnswer &solution) const {
 Vector OnlineSolver::field(const ReducedAnswer &solution) const {
   if (model_.fields.basis.rows() == 0)
     throw failure("the model was read without its fields: no full field can be reconstructed");
-  return with_imposed(model_.fields.basis * solution.u, solution.mu, model_.fields.points,
-                      model_.fields.imposed_by);
-}
-
-Vector OnlineSolver::with_imposed(Vector u, const FullMu &mu, const Matrix &points,
-                                  const std::vector<int> &imposed_by) const {
-  if (imposed_by.empty()) return u;
-  std::vector<Point> nodes;
-  for (Index i = 0; i < points.rows(); ++i)
-    nodes.push_back(point_of(points, i));
-  return u + imposed_values(scene_, mu, nodes, imposed_by);
+  Vector u = model_.fields.basis * solution.u;
+  const Vector given =
+      imposed_at(scene_, solution.mu, model_.fields.points, model_.fields.imposed_by);
+  if (given.size() > 0) u += given;
+  return u;
 }
 
 void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vector &lambda,
@@ -165,12 +159,8 @@ void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vec
       u += imposed_values(scene_, solution.mu, mesh.points, mesh.imposed_by);
     return u;
   };
-  const auto &[cells, basis] = model_.outputs;
-  const auto of_cells = [&, &cells = cells, &basis = basis] {
-    return with_imposed(basis * solution.u, solution.mu, cells.points, cells.imposed_by);
-  };
-  add_named_outputs({scene_, contact_, cells}, solution.mu, {of_interface, of_cells}, lambda,
-                    outputs);
+  add_named_outputs(scene_, contact_, solution.mu,
+                    {of_interface, cell_outputs_.at(solution.mu, solution.u)}, lambda, outputs);
 }
 
 Outputs OnlineSolver::outputs(const Mu &mu, const ReducedAnswer &solution) const {

@@ -23,7 +23,8 @@ Fit fit_columns(const Matrix &gram, const std::vector<Index> &candidates);
 /// Makes the first `count` columns of a block orthonormal to a basis and to each other, and appends
 /// them, but for those of which no more than `tolerance` of their norm is left. Returns which were
 /// taken. A column of which little is left waits for the others, so that factors have small
-/// condition. The basis has, for the first n columns of a block X,
+/// condition; one that fitted by round-off alone is found so by the next factor. The basis has, for
+/// the first n columns of a block X,
 ///   Matrix gram(block, n)            X^T P X; throws failure where it is not finite
 ///   Vector remove(block, n)          X <- X - Q Q^T P X; the norm of what each column loses
 ///   void rotate(block, Y)            X <- X Y
@@ -33,43 +34,60 @@ std::vector<int> append_block(Basis &basis, Block &block, Index count, double to
   constexpr double little = 0.1; // of its own: what one step leaves is not orthogonal to the rest
   std::vector<Index> waiting(count); // the numbers of the first columns of the block
   std::iota(waiting.begin(), waiting.end(), Index{0});
-  Vector whole;
+  Vector whole; // norms of the columns, scaled as they are
   std::vector<int> taken;
+  // Those of the candidates that fit, orthonormal, and behind them the other candidates.
+  const auto orthonormalise = [&](const Matrix &gram, const std::vector<Index> &candidates) {
+    Fit fit = fit_columns(gram, candidates);
+    std::vector<Index> order = fit.columns;
+    std::ranges::set_difference(candidates, fit.columns, std::back_inserter(order));
+    const Index fitting = std::ssize(fit.columns), rows = std::ssize(waiting);
+    for (Index j = gram.rows(); j < rows; ++j) // behind the candidates by now
+      order.push_back(j);
+    Matrix rotation = Matrix::Zero(rows, std::ssize(order));
+    rotation.topLeftCorner(gram.rows(), fitting) = fit.rotation;
+    for (Index k = fitting; k < rotation.cols(); ++k)
+      rotation(order[k], k) = 1;
+    basis.rotate(block, rotation);
+    for (Index k = 0; k < fitting; ++k)
+      whole[waiting[order[k]]] *= fit.rotation(order[k], k);
+    std::vector<Index> now;
+    std::ranges::transform(order, std::back_inserter(now), [&](Index j) { return waiting[j]; });
+    waiting = std::move(now);
+    return fit;
+  };
   while (!waiting.empty()) {
-    const Index n = std::ssize(waiting);
     Matrix gram;
     std::vector<Index> candidates;
     for (bool lost = true; lost;) { // until what is left is orthogonal to the basis
-      const Vector removed = basis.remove(block, n);
-      gram = basis.gram(block, n);
+      const Vector removed = basis.remove(block, std::ssize(waiting));
+      gram = basis.gram(block, std::ssize(waiting));
       const Vector left = gram.diagonal().cwiseMax(0).cwiseSqrt();
       if (whole.size() == 0) whole = (left.array().square() + removed.array().square()).sqrt();
       candidates.clear();
-      for (Index j = 0; j < n; ++j)
+      for (Index j = 0; j < left.size(); ++j)
         if (left[j] > tolerance * whole[waiting[j]]) candidates.push_back(j);
       lost = std::ranges::any_of(candidates, [&](Index j) { return left[j] < removed[j]; });
     }
     if (candidates.empty()) break;
-    const Fit fit = fit_columns(gram, candidates);
-    std::vector<Index> rest;
-    std::ranges::set_difference(candidates, fit.columns, std::back_inserter(rest));
-    const Index fitting = std::ssize(fit.columns), others = std::ssize(rest);
-    Matrix rotation = Matrix::Zero(n, fitting + others);
-    rotation.leftCols(fitting) = fit.rotation;
-    for (Index k = 0; k < others; ++k)
-      rotation(rest[k], fitting + k) = 1;
-    basis.rotate(block, rotation);
-    if (fit.least < little) basis.remove(block, fitting);
-    std::vector<Index> all(fitting);
-    std::iota(all.begin(), all.end(), Index{0});
-    basis.rotate(block, fit_columns(basis.gram(block, fitting), all).rotation);
+    Fit fit = orthonormalise(gram, candidates);
+    bool amplified = fit.least < little;
+    for (bool near = false; !near; amplified = !near) { // until one factor leaves round-off
+      const Index fitting = std::ssize(fit.columns);
+      if (amplified) basis.remove(block, fitting);
+      gram = basis.gram(block, fitting);
+      near = (gram - Matrix::Identity(fitting, fitting)).norm() <= little;
+      std::vector<Index> all(fitting);
+      std::iota(all.begin(), all.end(), Index{0});
+      fit = orthonormalise(gram, all);
+    }
+    const Index fitting = std::ssize(fit.columns), others = std::ssize(waiting) - fitting;
     basis.take(block, fitting);
     if (others > 0)
       basis.rotate(block, Matrix::Identity(fitting + others, fitting + others).rightCols(others));
-    for (const Index j : fit.columns)
-      taken.push_back(static_cast<int>(waiting[j]));
-    std::ranges::transform(rest, waiting.begin(), [&](Index j) { return waiting[j]; });
-    waiting.resize(others);
+    for (Index k = 0; k < fitting; ++k)
+      taken.push_back(static_cast<int>(waiting[k]));
+    waiting.erase(waiting.begin(), waiting.begin() + fitting);
   }
   std::ranges::sort(taken);
   return taken;

@@ -45,6 +45,7 @@ ReducedModel rebased(const ReducedModel &model, const Matrix &c, int modes) {
   if (model.body.springs.size() > 0) result.body.springs = c.transpose() * model.body.springs;
   result.body.f.reduced = c.transpose() * model.body.f.reduced;
   result.contact.trace = model.contact.trace * c;
+  if (model.outputs.basis.size() > 0) result.outputs.basis = model.outputs.basis * c;
   result.fields.basis.resize(0, 0);
   return result;
 }

@@ -75,19 +75,22 @@ struct Problem {
   Matrix elastic, held;
   Vector gap, load;
   NodeLaws laws;
+  bool slopes = false;
   Vector x{}, w{};
 
   SpringState at(const Vector &beta) {
     const Matrix h = elastic + held * held.transpose();
     const Vector q = gap - held * (beta + load);
-    const FrictionAnswer answer = friction_answer(
-        [&](const std::vector<Index> &which) { return Matrix(h(Eigen::all, which)); }, q, laws, {},
-        false);
+    FrictionSolver solver(
+        [&](const std::vector<Index> &which) { return Matrix(h(Eigen::all, which)); }, laws);
+    const FrictionAnswer answer = solver.answer(q, {}, false);
     EXPECT_TRUE(answer.converged);
     x = answer.x;
     w = answer.w;
-    return {beta + load - held.transpose() * x,
-            forces_on_motions(laws, held, load.cwiseAbs(), x).norm()};
+    SpringState state{beta + load - held.transpose() * x,
+                      forces_on_motions(laws, held, load.cwiseAbs(), x).norm()};
+    if (slopes) state.slope = -held.transpose() * solver.change(-held);
+    return state;
   }
 };
 
@@ -111,9 +114,16 @@ TEST(Balance, IsFoundForBodiesThatTouchThatOverlapAndThatFly) {
         load << -1, -3;
       Problem problem{compliance(held.rows(), 5), held, Vector::Zero(held.rows()), load, laws};
       problem.gap.head(nodes).setConstant(gap);
-      const Balance found = find_balance(Vector::Zero(load.size()),
-                                         [&](const Vector &beta) { return problem.at(beta); });
+      const auto lengths = [&](const Vector &beta) { return problem.at(beta); };
+      const Balance found = find_balance(Vector::Zero(load.size()), lengths);
       ASSERT_TRUE(found.converged) << friction << ' ' << gap;
+      if (friction) {
+        problem.slopes = true;
+        const Balance sooner = find_balance(Vector::Zero(load.size()), lengths);
+        ASSERT_TRUE(sooner.converged) << gap;
+        EXPECT_LT(sooner.solves, found.solves) << gap;
+        EXPECT_LE((sooner.beta - found.beta).norm(), 1e-9) << gap;
+      }
       EXPECT_LE(found.solves, 20) << friction << ' ' << gap;
       EXPECT_LE((load - held.transpose() * problem.x).norm(), 1e-9);
       // Without springs: the laws at w = H_0 x + gap - D beta.

@@ -152,6 +152,7 @@ TEST(NamedOutputs, AReactionBalancesContactAndLoads) {
                            "loads: {weight: {at: all, force: [0, -2*d]}, "
                            "edge: {at: top, traction: [0.5, 0]}}\n";
   const std::string outputs = "  up: {reaction: [0, 1], at: top}\n"
+                              "  corner: {value: ux, point: [1, 0.5]}\n"
                               "  aside: {reaction: [1, 0], at: top}\n";
   const Mu mu{0.047, 13};
   const auto balance = [&](double area) {
@@ -160,6 +161,7 @@ TEST(NamedOutputs, AReactionBalancesContactAndLoads) {
       EXPECT_NEAR(std::abs(found["aside"] + 0.5 * std::sqrt(area)), std::abs(found["sheared"]),
                   1e-9);
       EXPECT_GT(found["pressed"], 0.1);
+      EXPECT_NEAR(found["corner"], 0.3 * mu[0], 1e-12);
     };
   };
   compare_balance(pressed(hold, outputs, "plane_strain"), mu, balance(1));

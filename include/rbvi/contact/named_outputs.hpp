@@ -13,22 +13,17 @@ namespace rbvi {
 /// Throws bad_input for an output over a contact that the scene does not have.
 void check_outputs(const Scene &scene);
 
-/// Displacements without the motion, with the values that boundaries impose, node * components + c.
-struct OutputDisplacements {
-  std::function<Vector(std::size_t i)> of_interface; ///< at the nodes of interface number i
-  std::function<Vector()> of_cells;                  ///< at OutputCells::nodes
-};
-
 /// What named outputs are taken from.
-struct OutputPlaces {
-  const Scene &scene;
-  const Contact &contact;
-  const OutputCells &cells;
+struct OutputSources {
+  /// Displacements at the nodes of interface number i, without the motion, with the values that
+  /// boundaries impose, node * components + c.
+  std::function<Vector(std::size_t i)> of_interface;
+  std::function<double(int output)> of_cells; ///< values of those apart from contact
 };
 
 /// Sets Outputs::named. `lambda`: at the dual dofs. Throws failure for an extremum or a mean over
 /// nothing, or a field where it is not, such as a tangential stress without friction.
-void add_named_outputs(const OutputPlaces &places, const FullMu &mu, const OutputDisplacements &u,
-                       const Vector &lambda, Outputs &outputs);
+void add_named_outputs(const Scene &scene, const Contact &contact, const FullMu &mu,
+                       const OutputSources &sources, const Vector &lambda, Outputs &outputs);
 
 } // namespace rbvi

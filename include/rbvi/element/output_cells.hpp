@@ -4,6 +4,7 @@
 #include "rbvi/core/dense.hpp"
 #include "rbvi/core/scene.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace rbvi {
@@ -33,5 +34,21 @@ bool has_cells(const OutputForm &output);
 /// there.
 double cell_output(const Scene &scene, int output, const FullMu &mu, const OutputCells &cells,
                    const Vector &u);
+
+/// A reaction whose terms depend on mu by factors alone:
+/// sum over q of theta_q(mu) (rows.row(q) . u + given[q]).
+struct SeparatedReaction {
+  std::vector<int> terms; ///< numbers of terms q in a, then in f
+  Matrix rows;            ///< terms x (nodes * components), of u as in cell_output
+  Vector given;
+};
+
+/// Of output number `output`; empty where it is no reaction, or a term is mapped.
+std::optional<SeparatedReaction> separated_reaction(const Scene &scene, int output,
+                                                    const OutputCells &cells);
+
+/// `of_terms`: rows u.
+double reaction_value(const SeparatedReaction &reaction, const Scene &scene, const FullMu &mu,
+                      const Vector &of_terms);
 
 } // namespace rbvi

@@ -5,8 +5,10 @@
 //   lengths(beta) = beta.
 //
 // Without friction lengths is a contraction, piecewise affine: a proximal step of the energy over
-// the free motions. Anderson's acceleration with as many images as motions is then Newton's method
-// on each piece.
+// the free motions. Newton's method where the slope of the piece is known, else Anderson's
+// acceleration with as many images as motions, which is the same after as many steps. With friction
+// neither need come to an end: then slopes are taken by differences, and steps halved until the
+// excess falls.
 #pragma once
 
 #include "rbvi/method/node_laws.hpp"
@@ -19,6 +21,7 @@ namespace rbvi {
 struct SpringState {
   Vector lengths;
   double scale = 0;
+  Matrix slope{}; ///< of lengths - beta by beta, while active sets stay; empty: not known
 };
 
 struct Balance {

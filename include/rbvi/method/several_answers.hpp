@@ -44,6 +44,9 @@ public:
   /// To the last q, from another start. In the plane active sets tell all that follow: this ends,
   /// not converged, where it comes to some that were met on the way to an answer before.
   FrictionAnswer another(const Vector &start, bool by_rule);
+  /// Changes of the x of the last answer() by those of q (columns), while its active sets stay;
+  /// empty where they are not known: in space, without friction, after looks for others.
+  Matrix change(const Matrix &of_q) const;
   const NodeLaws &laws() const;
   bool by_rule() const; ///< the last answer()
 

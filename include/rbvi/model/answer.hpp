@@ -15,6 +15,8 @@ struct FreeMotions {
   NodeLaws laws;
   Matrix held; ///< rows of the laws x k
   Vector load, terms;
+  /// Of the multipliers by what springs are relaxed at, while active sets stay; empty: not known.
+  Matrix slope{};
 };
 
 /// u: n coefficients; lambda: R coefficients, >= 0 but for those of the free modes; residual: of

@@ -15,6 +15,7 @@ struct LawAtMu {
   Matrix b;    ///< m x n; where the law is one on fewer functions
   Vector load; ///< half response to the load; empty without one
   NodeLaws laws;
+  Matrix by_beta{}; ///< of q by what springs of free bodies are relaxed at; empty without them
 };
 
 /// What multipliers x leave at all nodes.

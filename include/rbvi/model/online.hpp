@@ -4,6 +4,7 @@
 #pragma once
 
 #include "rbvi/core/outputs.hpp"
+#include "rbvi/model/cell_outputs.hpp"
 #include "rbvi/model/cone_solver.hpp"
 #include "rbvi/model/law_solver.hpp"
 #include "rbvi/model/model.hpp"
@@ -50,9 +51,6 @@ private:
   /// weights, nodal_b and nodal_gap.
   ContactOperators nodal_operators(const ReducedAnswer &solution, const Vector &lambda) const;
 
-  /// u at nodes, with what boundaries impose there.
-  Vector with_imposed(Vector u, const FullMu &mu, const Matrix &points,
-                      const std::vector<int> &imposed_by) const;
   void add_outputs_of_scene(const ReducedAnswer &solution, const Vector &lambda,
                             Outputs &outputs) const;
 
@@ -64,6 +62,7 @@ private:
   const ReducedNitsche *nitsche_ = nullptr; ///< it, by Nitsche's method
   std::optional<NodalTrace> trace_;         ///< else
   SparseMatrix dual_basis_;
+  const CellOutputs cell_outputs_;
 };
 
 } // namespace rbvi
