@@ -1,5 +1,6 @@
 #include "rbvi/method/balance.hpp"
 
+#include "rbvi/core/error.hpp"
 #include "rbvi/method/anderson.hpp"
 #include "rbvi/method/nonnegative_qp.hpp"
 
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 namespace rbvi {
 
@@ -105,6 +107,15 @@ namespace {
 
 using Lengths = std::function<SpringState(const Vector &beta)>;
 
+/// None where the contact problem has no answer.
+std::optional<SpringState> attempt(const Lengths &lengths, const Vector &beta) {
+  try {
+    return lengths(beta);
+  } catch (const Error &) {
+    return std::nullopt;
+  }
+}
+
 /// Whether the excess is as small as can be.
 bool balances(const Balance &at, double scale, double tolerance) {
   constexpr double round_off = 1e-10;
@@ -149,15 +160,19 @@ private:
 };
 
 Balance accelerated(Vector beta, const Lengths &lengths) {
-  constexpr int most_solves = 100;
+  constexpr int most_solves = 100, patience = 30; // without a smaller excess
   constexpr double tolerance = 1e-12, round_off = 1e-10, farthest = 1e10;
   constexpr double constant = 1e-6, weak = 0.04; // changes of the excess, over it
   Balance result;
   Steps steps(beta.size());
-  Vector last, tried_at;
+  Vector last, tried_at, best;
   double step = 1, least = 0, tried = std::numeric_limits<double>::infinity();
-  while (result.solves < most_solves) {
-    const SpringState state = lengths(beta);
+  int best_at = 0;
+  while (result.solves < std::min(most_solves, best_at + patience)) {
+    const std::optional<SpringState> solved =
+        result.solves == 0 ? lengths(beta) : attempt(lengths, beta);
+    if (!solved) break;
+    const SpringState &state = *solved;
     ++result.solves;
     const double before = least;
     result.beta = beta;
@@ -172,6 +187,10 @@ Balance accelerated(Vector beta, const Lengths &lengths) {
     result.converged = !flies && balances(result, state.scale, stalls ? round_off : tolerance);
     result.flies = !(step < farthest);
     if (result.converged || result.flies) return result;
+    if (result.solves == 1 || size < least) {
+      best = beta;
+      best_at = result.solves;
+    }
     least = result.solves == 1 ? size : std::min(least, size);
     if (tried_at.size() > 0 && !(size < 0.5 * tried)) {
       beta = tried_at;
@@ -192,53 +211,77 @@ Balance accelerated(Vector beta, const Lengths &lengths) {
     }
     beta += steps.next(state, beta, result.excess);
   }
+  result.beta = best;
   return result;
 }
 
 /// Newton's method with slopes by differences, its steps halved until the excess falls.
-Balance by_differences(Balance from, const Lengths &lengths) {
-  constexpr int most_steps = 30;
-  constexpr double tolerance = 1e-10, difference = 1e-7, shortest = 1e-3;
-  double scale = 0;
-  const auto excess_at = [&](const Vector &beta) -> Vector {
-    const SpringState state = lengths(beta);
-    ++from.solves;
-    scale = state.scale;
-    return state.lengths - beta;
-  };
-  from.excess = excess_at(from.beta);
-  for (int k = 0; k < most_steps && !from.converged; ++k) {
-    const double size = from.excess.norm(), step = difference * scale;
-    Matrix slope(from.beta.size(), from.beta.size());
-    for (Index j = 0; j < slope.cols(); ++j) {
-      Vector moved = from.beta;
-      moved[j] += step;
-      slope.col(j) = (excess_at(moved) - from.excess) / step;
-    }
-    const Vector newton = -slope.fullPivLu().solve(from.excess);
-    if (!newton.allFinite()) break;
-    const auto falls = [&](double part) {
-      const Vector beta = from.beta + part * newton, excess = excess_at(beta);
-      if (!(excess.norm() <= (1 - 0.1 * part) * size)) return false;
-      from.beta = beta;
-      from.excess = excess;
-      return true;
-    };
-    double part = 1;
-    while (!falls(part) && part > shortest)
-      part /= 2;
-    if (part <= shortest) break;
-    from.converged = balances(from, scale, tolerance);
+class ByDifferences {
+public:
+  ByDifferences(Balance from, const Lengths &lengths)
+      : found_(std::move(from)), lengths_(lengths) {}
+  Balance run() {
+    constexpr int most_steps = 30;
+    constexpr double tolerance = 1e-12, round_off = 1e-10;
+    int steps = 0;
+    while (asks_there() && !balances(found_, scale_, tolerance) && steps < most_steps && step())
+      ++steps;
+    // The last one asked for.
+    found_.converged = asks_there() && balances(found_, scale_, round_off);
+    return std::move(found_);
   }
-  return from;
-}
+
+private:
+  /// None where the contact problem has no answer.
+  std::optional<Vector> excess_at(const Vector &beta) {
+    ++found_.solves;
+    const std::optional<SpringState> state = attempt(lengths_, beta);
+    if (!state) return std::nullopt;
+    scale_ = state->scale;
+    return Vector(state->lengths - beta);
+  }
+  bool asks_there() {
+    const std::optional<Vector> excess = excess_at(found_.beta);
+    if (excess) found_.excess = *excess;
+    return excess.has_value();
+  }
+  bool step() {
+    constexpr double difference = 1e-7, shortest = 1e-3;
+    const double size = difference * scale_;
+    Matrix slope(found_.beta.size(), found_.beta.size());
+    for (Index j = 0; j < slope.cols(); ++j) {
+      Vector moved = found_.beta;
+      moved[j] += size;
+      const std::optional<Vector> excess = excess_at(moved);
+      if (!excess) return false;
+      slope.col(j) = (*excess - found_.excess) / size;
+    }
+    const Vector newton = -slope.fullPivLu().solve(found_.excess);
+    double part = newton.allFinite() ? 1 : 0;
+    while (part > shortest && !falls(part, newton))
+      part /= 2;
+    return part > shortest;
+  }
+  bool falls(double part, const Vector &newton) {
+    const Vector beta = found_.beta + part * newton;
+    const std::optional<Vector> excess = excess_at(beta);
+    if (!excess || !(excess->norm() <= (1 - 0.1 * part) * found_.excess.norm())) return false;
+    found_.beta = beta;
+    found_.excess = *excess;
+    return true;
+  }
+
+  Balance found_;
+  const Lengths &lengths_;
+  double scale_ = 0;
+};
 
 } // namespace
 
 Balance find_balance(Vector beta, const Lengths &lengths) {
   Balance result = accelerated(std::move(beta), lengths);
   if (result.converged || result.flies) return result;
-  return by_differences(std::move(result), lengths);
+  return ByDifferences(std::move(result), lengths).run();
 }
 
 } // namespace rbvi
