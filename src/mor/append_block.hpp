@@ -4,6 +4,7 @@
 #include "rbvi/core/dense.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <vector>
 
@@ -19,6 +20,15 @@ struct Fit {
 
 /// Of these candidates, in their order. `gram`: X^T P X of all columns.
 Fit fit_columns(const Matrix &gram, const std::vector<Index> &candidates);
+
+/// Old positions of the columns that stay, and the rotation that brings them there.
+struct Order {
+  std::vector<Index> columns;
+  Matrix rotation;
+};
+
+/// Those that fit, the other candidates, and those behind the first `among` of `all` columns.
+Order fitting_first(const Fit &fit, const std::vector<Index> &candidates, Index among, Index all);
 
 /// Makes the first `count` columns of a block orthonormal to a basis and to each other, and appends
 /// them, but for those of which no more than `tolerance` of their norm is left. Returns which were
@@ -39,15 +49,8 @@ std::vector<int> append_block(Basis &basis, Block &block, Index count, double to
   // Those of the candidates that fit, orthonormal, and behind them the other candidates.
   const auto orthonormalise = [&](const Matrix &gram, const std::vector<Index> &candidates) {
     Fit fit = fit_columns(gram, candidates);
-    std::vector<Index> order = fit.columns;
-    std::ranges::set_difference(candidates, fit.columns, std::back_inserter(order));
-    const Index fitting = std::ssize(fit.columns), rows = std::ssize(waiting);
-    for (Index j = gram.rows(); j < rows; ++j) // behind the candidates by now
-      order.push_back(j);
-    Matrix rotation = Matrix::Zero(rows, std::ssize(order));
-    rotation.topLeftCorner(gram.rows(), fitting) = fit.rotation;
-    for (Index k = fitting; k < rotation.cols(); ++k)
-      rotation(order[k], k) = 1;
+    const auto fitting = std::ssize(fit.columns);
+    const auto [order, rotation] = fitting_first(fit, candidates, gram.rows(), std::ssize(waiting));
     basis.rotate(block, rotation);
     for (Index k = 0; k < fitting; ++k)
       whole[waiting[order[k]]] *= fit.rotation(order[k], k);

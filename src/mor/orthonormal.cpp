@@ -32,6 +32,19 @@ Fit fit_columns(const Matrix &gram, const std::vector<Index> &candidates) {
   return fit;
 }
 
+Order fitting_first(const Fit &fit, const std::vector<Index> &candidates, Index among, Index all) {
+  Order order{fit.columns, {}};
+  std::ranges::set_difference(candidates, fit.columns, std::back_inserter(order.columns));
+  for (Index j = among; j < all; ++j)
+    order.columns.push_back(j);
+  const auto fitting = std::ssize(fit.columns);
+  order.rotation = Matrix::Zero(all, std::ssize(order.columns));
+  order.rotation.topLeftCorner(among, fitting) = fit.rotation;
+  for (Index k = fitting; k < order.rotation.cols(); ++k)
+    order.rotation(order.columns[k], k) = 1;
+  return order;
+}
+
 namespace {
 
 /// What append_block wants of columns.
