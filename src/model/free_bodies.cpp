@@ -52,7 +52,12 @@ ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, con
   int iterations = 0;
   double to_other = 0;
   const Balance balance = find_balance(start, [&](const Vector &beta) {
-    answer = method.solve(mu, {beta, std::move(answer)});
+    try {
+      answer = method.solve(mu, {beta, std::move(answer)});
+    } catch (const Error &) {
+      answer = {}; // of which the solve that failed has taken parts
+      throw;
+    }
     iterations += answer.iterations;
     to_other = std::max(to_other, answer.to_other);
     const FreeMotions &motions = *answer.motions;
