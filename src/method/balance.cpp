@@ -140,10 +140,10 @@ public:
     images_.push_back(state.lengths);
     const Vector shares = anderson_.combine(excess);
     if (std::ssize(images_) > shares.size()) images_.erase(images_.begin());
-    const Eigen::FullPivLU<Matrix> slope(state.slope);
-    if (state.slope.size() > 0 && slope.isInvertible() && rises_ < most_rises) {
+    if (state.slope.size() > 0 && rises_ < most_rises) {
+      const Eigen::FullPivLU<Matrix> slope(state.slope);
       const Vector step = -slope.solve(excess);
-      if (step.norm() <= longest * excess.norm()) return step;
+      if (slope.isInvertible() && step.norm() <= longest * excess.norm()) return step;
     }
     Vector step = -beta;
     for (Index j = 0; j < shares.size(); ++j)
