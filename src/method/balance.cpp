@@ -223,11 +223,13 @@ public:
   Balance run() {
     constexpr int most_steps = 30;
     constexpr double tolerance = 1e-12, round_off = 1e-10;
-    int steps = 0;
-    while (asks_there() && !balances(found_, scale_, tolerance) && steps < most_steps && step())
-      ++steps;
-    // The last one asked for.
-    found_.converged = asks_there() && balances(found_, scale_, round_off);
+    bool there = asks_there(); // the last one asked for is the one found
+    for (int k = 0; k < most_steps && there && !balances(found_, scale_, tolerance); ++k)
+      if (!step()) {
+        there = asks_there();
+        break;
+      }
+    found_.converged = there && balances(found_, scale_, round_off);
     return std::move(found_);
   }
 

@@ -10,7 +10,7 @@ namespace rbvi {
 
 namespace {
 
-/// Positions in the order of their values: which[k] -> k; of those that are not in it -1.
+/// The position of each that is taken among those that are; -1 of the others.
 std::vector<int> numbered(const std::vector<bool> &taken) {
   std::vector<int> numbers(taken.size(), -1);
   int next = 0;

@@ -32,8 +32,8 @@ struct Balance {
 };
 
 /// `lengths`: solves the contact problem with springs relaxed at beta; called with the last beta
-/// last. What it throws at the first one passes; elsewhere the step is shortened. Converged to 1e-12 of the scale, or to what round-off leaves below
-/// 1e-10.
+/// last. What it throws at the first one passes; elsewhere the step is shortened. Converged to
+/// 1e-12 of the scale, or to what round-off leaves below 1e-10.
 Balance find_balance(Vector beta, const std::function<SpringState(const Vector &beta)> &lengths);
 
 /// Orthonormal combinations of the free motions that no multiplier resists, whatever it is:

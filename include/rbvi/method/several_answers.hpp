@@ -45,7 +45,7 @@ public:
   /// not converged, where it comes to some that were met on the way to an answer before.
   FrictionAnswer another(const Vector &start, bool by_rule);
   /// Changes of the x of the last answer() by those of q (columns), while its active sets stay;
-  /// empty where they are not known: in space, without friction, after looks for others.
+  /// empty where they are not known: in space, or without friction. To be asked before another().
   Matrix change(const Matrix &of_q) const;
   const NodeLaws &laws() const;
   bool by_rule() const; ///< the last answer()

@@ -9,7 +9,8 @@
 
 namespace rbvi {
 
-/// What boundaries impose at nodes (nodes x dim), node * components + c; empty where that is nothing.
+/// What boundaries impose at nodes (nodes x dim), node * components + c; empty where they impose
+/// nothing.
 Vector imposed_at(const Scene &scene, const FullMu &mu, const Matrix &nodes,
                   const std::vector<int> &imposed_by);
 
