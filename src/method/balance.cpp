@@ -171,9 +171,9 @@ Balance accelerated(Vector beta, const Lengths &lengths) {
   while (result.solves < std::min(most_solves, best_at + patience)) {
     const std::optional<SpringState> solved =
         result.solves == 0 ? lengths(beta) : attempt(lengths, beta);
+    ++result.solves;
     if (!solved) break;
     const SpringState &state = *solved;
-    ++result.solves;
     const double before = least;
     result.beta = beta;
     result.excess = state.lengths - beta;

@@ -1,5 +1,6 @@
 // Options of SLEPc's objects: which there are, and whether a run asks for them.
 #include "database.hpp"
+#include "uses.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/high_fidelity_constant.hpp"
@@ -24,25 +25,20 @@ bool is_ineffective(const std::string &name) {
   return false;
 }
 
-/// Whether there is a reduced pair of spaces.
-bool has_pair(const ToolOptions &options) {
-  return has_multipliers(options.scene) &&
-         options.reduce.multipliers.reduction != MultiplierReduction::condensed;
-}
-
 /// Why a run makes no supremizers; "" where it does.
 std::string without_supremizers(const ToolOptions &options) {
-  const Scene &scene = options.scene;
-  if (!has_multipliers(scene)) return "Nitsche's method has no multipliers to make supremizers for";
+  if (!is_of(use::multipliers, options))
+    return "Nitsche's method has no multipliers to make supremizers for";
   if (options.reduce.enrichment == Enrichment::decorrelated)
     return "-pga_enrichment decorrelated makes no supremizers";
-  if (!has_pair(options)) return "-multiplier_reduction cone and collocated alone make supremizers";
+  if (!is_of(use::dual_basis, options))
+    return "-multiplier_reduction cone and collocated alone make supremizers";
   return "";
 }
 
 /// Why a run computes no inf-sup constants; "" where it does.
 std::string without_constants(const ToolOptions &options) {
-  if (!has_pair(options))
+  if (!is_of(use::dual_basis, options))
     return "inf-sup constants are of a reduced pair: -multiplier_reduction cone or collocated";
   return options.stability ? "" : "-verify_stability no computes no inf-sup constants";
 }

@@ -130,14 +130,25 @@ std::vector<std::pair<Parameter, std::string>> parameters_of(const SceneEntry &e
   return all;
 }
 
-Option kept(bool (*when)(const ToolOptions &), Option option, const std::string &as) {
-  option.kept = when;
+Option only(const Use &use, Option option) {
+  option.use = &use;
+  return option;
+}
+
+std::vector<Option> only(const Use &use, std::vector<Option> options) {
+  for (Option &option : options)
+    if (option.use == nullptr) option.use = &use;
+  return options;
+}
+
+Option kept(Option option, const std::string &as) {
   option.kept_as = as.empty() ? option.name : as;
   return option;
 }
 
-bool always(const ToolOptions & /*options*/) {
-  return true;
+Option kept(const Use &runs, Option option) {
+  option.kept = &runs;
+  return kept(std::move(option));
 }
 
 Option otherwise(const std::string &value, Option option) {

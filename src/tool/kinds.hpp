@@ -65,11 +65,14 @@ template <class Place> Option placed(Option option, Place place) {
   return option;
 }
 
-/// Models keep the value where `when` says so, as the setting `as`: by default of the same name.
-Option kept(bool (*when)(const ToolOptions &), Option option, const std::string &as = "");
+/// For these runs alone; of several options those that are not for others.
+Option only(const Use &use, Option option);
+std::vector<Option> only(const Use &use, std::vector<Option> options);
 
-/// Every model keeps the value.
-bool always(const ToolOptions &options);
+/// Models of the runs that it is for, or of `runs`, keep the value, as the setting `as`: by default
+/// of the same name.
+Option kept(Option option, const std::string &as = "");
+Option kept(const Use &runs, Option option);
 
 /// What stands in place of a value that is not given.
 Option otherwise(const std::string &value, Option option);

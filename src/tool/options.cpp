@@ -188,7 +188,7 @@ ToolOptions read_values(const std::vector<std::string> &names, const GivenCase &
   MultiplierReduction &reduction = options.reduce.multipliers.reduction;
   reduction = reduction_of(options.scene, reduction);
   check_rules(options);
-  if (!has_online_method(options)) options.online_method = OnlineMethod::exact;
+  if (!is_of(use::online, options)) options.online_method = OnlineMethod::exact;
   if (keeps_law(reduction) && !is_given("cone_type"))
     options.reduce.cone.type = ConeType::mcpg; // hybrid has functions of either sign
   return options;

@@ -11,26 +11,6 @@ namespace {
 
 const Range basis_size{0, 100000};
 
-bool mixed(const ToolOptions &options) {
-  return has_multipliers(options.scene);
-}
-
-bool not_mixed(const ToolOptions &options) {
-  return !mixed(options);
-}
-
-bool with_law(const ToolOptions &options) {
-  return mixed(options) && keeps_law(options.reduce.multipliers.reduction);
-}
-
-bool collocated(const ToolOptions &options) {
-  return mixed(options) && options.reduce.multipliers.reduction == MultiplierReduction::collocated;
-}
-
-bool with_dual_basis(const ToolOptions &options) {
-  return mixed(options) && options.reduce.multipliers.reduction != MultiplierReduction::condensed;
-}
-
 Option pga_tolerance() {
   Option option =
       number("pga_tolerance", {0, 0.999}, RBVI_AT(reduce.pga.tolerance),
@@ -73,7 +53,14 @@ Option nitsche_eim_validation() {
   return option;
 }
 
-std::vector<Option> of_bases() {
+std::vector<Option> of_modes() {
+  return {kept(number("pod_tolerance", relative_error, RBVI_AT(reduce.pod.tolerance),
+                      "relative error that the modes of the displacement may leave (2.11)")),
+          number("pod_max_size", basis_size, RBVI_AT(reduce.pod.max_size),
+                 "largest number of modes; 0: no limit")};
+}
+
+std::vector<Option> of_cones() {
   const std::vector<std::string> cones{
       "snapshots of the pressure, each the one farthest from the cone of those before (B.2)",
       "the same, each without the largest part that the cone holds already (Algorithm 2); default "
@@ -86,52 +73,43 @@ std::vector<Option> of_bases() {
       "hat functions where contact changes, and a few modes of either sign at the nodes that never "
       "leave contact: see the study in membrane_obstacle/README.md"};
   return {
-      kept(always, number("pod_tolerance", relative_error, RBVI_AT(reduce.pod.tolerance),
-                          "relative error that the modes of the displacement may leave (2.11)")),
-      number("pod_max_size", basis_size, RBVI_AT(reduce.pod.max_size),
-             "largest number of modes; 0: no limit"),
-      kept(with_dual_basis,
-           choice("cone_type", choices(cone_type_names(), cones), RBVI_AT(reduce.cone.type),
+      kept(choice("cone_type", choices(cone_type_names(), cones), RBVI_AT(reduce.cone.type),
                   "dual basis: functions that the multipliers are combined from")),
-      kept(with_dual_basis,
-           number("cone_tolerance", relative_error, RBVI_AT(reduce.cone.tolerance),
+      kept(number("cone_tolerance", relative_error, RBVI_AT(reduce.cone.tolerance),
                   "relative error that the dual basis may leave (2.34); nodal does not use it")),
       number("cone_max_size", basis_size, RBVI_AT(reduce.cone.max_size),
              "largest number of its functions; 0: no limit"),
-      kept(with_dual_basis,
-           number("cone_feasibility", relative_error, RBVI_AT(reduce.cone.feasibility),
+      kept(number("cone_feasibility", relative_error, RBVI_AT(reduce.cone.feasibility),
                   "mcpg: largest negative value that a function may have, as a "
                   "fraction of its maximum")),
-      kept(with_dual_basis, number("cone_ring", {0, 1000}, RBVI_AT(reduce.cone.ring),
-                                   "nodal, hybrid: how many layers of nodes around the nodes where "
-                                   "contact changes have hats, too; hybrid: at least 1 if the "
-                                   "training set has no corners, doubled as needed")),
-      kept(mixed, number("cone_level", refinements, RBVI_AT(reduce.cone.level),
-                         "hybrid, and the law at nodes: take the hats of the mesh with this many "
-                         "refinements less"))};
+      kept(number("cone_ring", {0, 1000}, RBVI_AT(reduce.cone.ring),
+                  "nodal, hybrid: how many layers of nodes around the nodes where "
+                  "contact changes have hats, too; hybrid: at least 1 if the "
+                  "training set has no corners, doubled as needed")),
+      kept(use::multipliers,
+           only(use::hats,
+                number("cone_level", refinements, RBVI_AT(reduce.cone.level),
+                       "hybrid, and the law at nodes: take the hats of the mesh with this many "
+                       "refinements less")))};
 }
 
 std::vector<Option> of_stability() {
   return {
-      kept(with_dual_basis,
-           choice(
-               "pga_enrichment",
-               choices(
-                   enrichment_names(),
-                   {"none: the modes alone",
-                    "those of each parameter, made anew for each query (2.17)",
-                    "one set for all parameters, chosen by the projected greedy algorithm (2.30)"}),
-               RBVI_AT(reduce.enrichment), "which supremizers join the modes")),
-      kept(with_dual_basis,
-           choice("pga_product",
+      kept(choice(
+          "pga_enrichment",
+          choices(enrichment_names(),
+                  {"none: the modes alone",
+                   "those of each parameter, made anew for each query (2.17)",
+                   "one set for all parameters, chosen by the projected greedy algorithm (2.30)"}),
+          RBVI_AT(reduce.enrichment), "which supremizers join the modes")),
+      kept(choice("pga_product",
                   choices(product_names(),
                           {"the product of V, for which the theory states its constants and bounds",
                            "the energy of A at -reference_mu"}),
                   RBVI_AT(reduce.product), "product with which supremizers are computed")),
       reference_mu(),
-      kept(with_dual_basis, pga_tolerance()),
-      kept(with_dual_basis,
-           number("pga_beta_fraction", {0, 1 - 1e-12}, RBVI_AT(reduce.pga.stability),
+      kept(pga_tolerance()),
+      kept(number("pga_beta_fraction", {0, 1 - 1e-12}, RBVI_AT(reduce.pga.stability),
                   "stop when beta_off >= this fraction of beta_on holds for certain")),
       number("pga_max_size", basis_size, RBVI_AT(reduce.pga.max_size),
              "largest number of supremizers; 0: no limit")};
@@ -139,22 +117,25 @@ std::vector<Option> of_stability() {
 
 std::vector<Option> of_separation() {
   return {
-      kept(always, number("eim_tolerance", relative_error, RBVI_AT(reduce.eim.tolerance),
-                          "relative error that the separated operators may have (B.32)")),
+      kept(number("eim_tolerance", relative_error, RBVI_AT(reduce.eim.tolerance),
+                  "relative error that the separated operators may have (B.32)")),
       number("eim_max_size", basis_size, RBVI_AT(reduce.eim.max_size),
              "largest number of terms; 0: no limit"),
       otherwise("-eim_tolerance",
-                kept(collocated,
-                     number("eim_normal_tolerance", relative_error, RBVI_AT(reduce.eim_normal),
-                            "collocated: the same for B^n, the rows of lambda_n (3.61a)"))),
+                kept(use::collocated,
+                     only(use::rows_apart,
+                          number("eim_normal_tolerance", relative_error, RBVI_AT(reduce.eim_normal),
+                                 "collocated: the same for B^n, the rows of lambda_n (3.61a)")))),
       otherwise(
           "-eim_tolerance",
-          kept(collocated,
-               number("eim_tangential_tolerance", relative_error, RBVI_AT(reduce.eim_tangential),
-                      "collocated: the same for B^tau, the rows of lambda_tau (3.61b)")))};
+          kept(use::collocated,
+               only(use::tangential_rows,
+                    number("eim_tangential_tolerance", relative_error,
+                           RBVI_AT(reduce.eim_tangential),
+                           "collocated: the same for B^tau, the rows of lambda_tau (3.61b)"))))};
 }
 
-std::vector<Option> of_multipliers() {
+std::vector<Option> of_law() {
   const std::vector<std::string> reductions{
       "condensed on rigid supports and between two bodies, otherwise cone",
       "a cone of functions (-cone_type), made stable by supremizers; without friction",
@@ -166,20 +147,23 @@ std::vector<Option> of_multipliers() {
       "interpolated apart unless B is a multiple of one form; without friction the cone and B^n "
       "alone"};
   return {
-      kept(with_law,
-           number("condensed_tolerance", relative_error, RBVI_AT(reduce.condensed.tolerance),
+      kept(number("condensed_tolerance", relative_error, RBVI_AT(reduce.condensed.tolerance),
                   "relative error that the condensed operator may have as a function of mu")),
       number("response_tolerance", relative_error, RBVI_AT(reduce.condensed.responses),
              "responses A^-1 B^T join the modes: first those of one A (if it is constant and they "
              "would take more than 160 MB only those to answers of the law, to 1e-5 in the "
              "energy), then of others until this relative error is left; 0: none join"),
-      kept(with_law,
-           choice("multiplier_reduction", choices(multiplier_reduction_names(), reductions),
-                  RBVI_AT(reduce.multipliers.reduction), "how the multipliers are reduced")),
+      kept(use::law,
+           only(use::multipliers,
+                choice("multiplier_reduction", choices(multiplier_reduction_names(), reductions),
+                       RBVI_AT(reduce.multipliers.reduction), "how the multipliers are reduced")))};
+}
+
+std::vector<Option> of_collocation() {
+  return {
       flag("multiplier_exact", RBVI_AT(reduce.multipliers.exact),
            "collocated: an answer that breaks the law at some node is corrected by exact steps"),
-      kept(collocated,
-           number("tangential_tolerance", relative_error, RBVI_AT(reduce.multipliers.tangential),
+      kept(number("tangential_tolerance", relative_error, RBVI_AT(reduce.multipliers.tangential),
                   "collocated: relative error that the modes of lambda_tau may leave")),
       choice("gcns_nodes",
              choices(collocation_nodes_names(),
@@ -200,29 +184,35 @@ std::vector<Option> of_nitsche() {
              {{"searched", "along each the least energy is taken; they start in contact"},
               {"plain", "as published, from u = 0 (4.23), (4.41), (4.53): they may cycle"}},
              RBVI_AT(hf.nitsche.plain_steps), "steps of Newton's method"),
-      choice("nitsche_loop",
-             {{"nested", "keeps it fixed within an outer loop (4.63)"},
-              {"single", "updates it in every Newton step (4.53)"}},
-             RBVI_AT(hf.nitsche.single_loop),
-             "how Newton's method treats Coulomb's bound, which depends on the pressure"),
+      only(use::coulomb_terms,
+           choice("nitsche_loop",
+                  {{"nested", "keeps it fixed within an outer loop (4.63)"},
+                   {"single", "updates it in every Newton step (4.53)"}},
+                  RBVI_AT(hf.nitsche.single_loop),
+                  "how Newton's method treats Coulomb's bound, which depends on the pressure")),
       choice("nitsche_bounds",
              {{"none", "Newton's method"},
               {"nonpenetration", "SNES keeps the nodes' normal displacements below the gap"}},
              RBVI_AT(hf.nitsche.nonpenetration), "bounds that the displacement keeps besides"),
-      kept(not_mixed,
-           choice(
-               "nitsche_quadrature",
-               choices(curve_rule_names(),
-                       {"at a few Gauss points of the curve, with non-negative weights from least "
-                        "squares (NNLS), so that the reduced problem still minimises an energy",
-                        "at all Gauss points",
-                        "the published method: tangent and residual by empirical interpolation "
-                        "over (mu, Newton step) (4.71)-(4.80)"}),
-               RBVI_AT(reduce.curve.rule),
-               "how a reduced model integrates contact and friction over the curve")),
-      number("nitsche_quadrature_tolerance", relative_error, RBVI_AT(reduce.curve.tolerance),
-             "empirical: relative error that it may add to u at a training parameter; 0: as much "
-             "as the modes leave there"),
+      kept(choice(
+          "nitsche_quadrature",
+          choices(curve_rule_names(),
+                  {"at a few Gauss points of the curve, with non-negative weights from least "
+                   "squares (NNLS), so that the reduced problem still minimises an energy",
+                   "at all Gauss points",
+                   "the published method: tangent and residual by empirical interpolation "
+                   "over (mu, Newton step) (4.71)-(4.80)"}),
+          RBVI_AT(reduce.curve.rule),
+          "how a reduced model integrates contact and friction over the curve")),
+      only(use::empirical,
+           number(
+               "nitsche_quadrature_tolerance", relative_error, RBVI_AT(reduce.curve.tolerance),
+               "empirical: relative error that it may add to u at a training parameter; 0: as much "
+               "as the modes leave there"))};
+}
+
+std::vector<Option> of_interpolated_curve() {
+  return {
       number("nitsche_eim_tolerance", relative_error, RBVI_AT(reduce.curve.eim_tolerance),
              "interpolated: relative error that may be left over all (mu, Newton step) (B.32)"),
       choice("nitsche_eim_pairs",
@@ -237,11 +227,14 @@ std::vector<Option> of_nitsche() {
 
 std::vector<Option> reduction_options() {
   std::vector<Option> all;
-  add("Bases", of_bases(), all);
-  add("Stability", of_stability(), all);
+  add("Bases", of_modes(), all);
+  add("Bases", only(use::dual_basis, of_cones()), all);
+  add("Stability", only(use::dual_basis, of_stability()), all);
   add("Separation", of_separation(), all);
-  add("Multipliers", of_multipliers(), all);
-  add("Nitsche's method", of_nitsche(), all);
+  add("Multipliers", only(use::law, of_law()), all);
+  add("Multipliers", only(use::collocated, of_collocation()), all);
+  add("Nitsche's method", only(use::nitsche, of_nitsche()), all);
+  add("Nitsche's method", only(use::interpolated, of_interpolated_curve()), all);
   return all;
 }
 

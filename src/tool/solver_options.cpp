@@ -36,12 +36,13 @@ void check_solver_of(const std::string &name, const Scene &scene, const HfOption
   for (const Ineffective &option : ineffective)
     if (name.starts_with(option.name))
       throw bad_input("-" + name + " has no effect: " + option.instead);
-  if (name.starts_with("nitsche_") && has_multipliers(scene))
+  const bool mixed = has_multipliers(scene);
+  if (name.starts_with("nitsche_") && mixed)
     throw bad_input("-" + name + " is for Nitsche's method: set -formulation nitsche");
-  if (name.starts_with("hf_") && !has_multipliers(scene))
+  if (name.starts_with("hf_") && !mixed)
     throw bad_input("-" + name + " is for the mixed formulation: Nitsche's method has -nitsche_" +
                     name.substr(3));
-  if (name.starts_with("vi_") && (!has_multipliers(scene) || options.method != HfMethod::vi))
+  if (name.starts_with("vi_") && (!mixed || options.method != HfMethod::vi))
     throw bad_input("-" + name + " is for -hf_method vi");
 }
 

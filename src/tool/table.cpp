@@ -44,8 +44,7 @@ std::vector<Option> of_runs() {
       {"parameters", OptionKind::text,
        "names of the parameters that vary, in the order of -mu; the others keep one value", "names",
        "the scene's"},
-      kept(always,
-           otherwise("the scene's",
+      kept(otherwise("the scene's",
                      text("train", OptionKind::set, "set", RBVI_AT(train),
                           "parameters of the training set: grid:5,5,5 | random:COUNT:SEED | COUNT "
                           "(seed 1) | corners (and centres of faces of the box) | file.csv with a "
@@ -67,9 +66,12 @@ std::vector<Option> of_runs() {
                       "file to which solve writes its outputs as a table")),
       flag("verify_stability", RBVI_AT(stability),
            "verify: measure inf-sup constants and their bounds besides errors"),
-      kept([](const ToolOptions &o) { return o.online_method != OnlineMethod::exact; },
-           choice("online_method",
-                  choices(online_method_names(),
+      kept(
+          use::not_exact,
+          only(use::online,
+               choice("online_method",
+                      choices(
+                          online_method_names(),
                           {"to round-off, by the fastest iteration that there is",
                            "-multiplier_reduction collocated: Uzawa's method on the reduced pair, "
                            "(3.40) or (3.55) until (3.19)",
@@ -77,8 +79,8 @@ std::vector<Option> of_runs() {
                            "linearised at the state before (A.7), not accelerated",
                            "-nitsche_quadrature interpolated: Newton's method (4.79) as published, "
                            "from u_0 = 0 and without a rescue"}),
-                  RBVI_AT(online_method),
-                  "how the model answers, in verify and bench, and later in rbvi-online")),
+                      RBVI_AT(online_method),
+                      "how the model answers, in verify and bench, and later in rbvi-online"))),
       of_command(
           rising("bench_growth", refinements, RBVI_AT(growth),
                  "bench: measure what offline costs, stage by stage, on the meshes with these "
@@ -92,43 +94,50 @@ std::vector<Option> of_runs() {
 }
 
 std::vector<Option> of_meshes() {
-  return {kept(always, mesh_file(), "mesh_file"),
-          kept(always, number("mesh_refine", refinements, RBVI_AT(mesh.refine),
-                              "how many times all edges are halved"))};
+  return {kept(mesh_file(), "mesh_file"),
+          kept(number("mesh_refine", refinements, RBVI_AT(mesh.refine),
+                      "how many times all edges are halved"))};
 }
 
 std::vector<Option> solver_rows() {
   return {
-      choice(
-          "hf_method",
-          choices(
-              hf_method_names(),
-              {"a semismooth Newton method: guess which nodes touch, stick and slip, solve, and "
-               "guess again",
-               "gradient steps for the multipliers, negative pressures cut off: the slow baseline",
-               "PETSc's solver of variational inequalities (SNES VI): it bounds single nodes, so "
-               "it needs -lumped yes and no friction"}),
-          RBVI_AT(hf.method), "method that solves the full problem"),
-      choice(
-          "hf_contact",
-          choices(hf_contact_names(),
+      only(use::multipliers,
+           choice("hf_method",
+                  choices(hf_method_names(), {"a semismooth Newton method: guess which nodes "
+                                              "touch, stick and slip, solve, and "
+                                              "guess again",
+                                              "gradient steps for the multipliers, negative "
+                                              "pressures cut off: the slow baseline",
+                                              "PETSc's solver of variational inequalities (SNES "
+                                              "VI): it bounds single nodes, so "
+                                              "it needs -lumped yes and no friction"}),
+                  RBVI_AT(hf.method), "method that solves the full problem")),
+      only(
+          use::active_set,
+          choice(
+              "hf_contact",
+              choices(
+                  hf_contact_names(),
                   {"the one that takes less time by an estimate from the sizes, which -plan prints",
                    "for the multipliers, with columns of B A^-1 B^T, which are kept as long as A "
                    "does not change",
                    "for the displacement, of which each active constraint eliminates one dof; "
                    "starts on the coarser meshes that -mesh_refine has"}),
-          RBVI_AT(hf.contact), "for which unknown active_set solves its linear systems"),
+              RBVI_AT(hf.contact), "for which unknown active_set solves its linear systems")),
       number("contact_gather", {0, 1000000000}, RBVI_AT(contact_gather),
              "each rank evaluates a whole interface with up to this many multipliers, and its own "
-             "part of a larger one (of two bodies always the whole)"),
-      number("uzawa_tolerance", {1e-15, 0.1}, RBVI_AT(hf.uzawa.tolerance),
-             "uzawa stops at this relative change of the multipliers"),
-      number("uzawa_max_iterations", {1, 100000000}, RBVI_AT(hf.uzawa.max_iterations),
-             "largest number of iterations of uzawa"),
-      flag("uzawa_accelerated", RBVI_AT(hf.uzawa.accelerated),
-           "accelerate uzawa by Nesterov's extrapolation with restart"),
-      number("uzawa_step", positive, RBVI_AT(hf.uzawa.step),
-             "step rho of uzawa; 0: 1 / largest eigenvalue of B A^-1 B^T")};
+             "part of a larger one (of two bodies always the whole)")};
+}
+
+std::vector<Option> of_uzawa() {
+  return {number("uzawa_tolerance", {1e-15, 0.1}, RBVI_AT(hf.uzawa.tolerance),
+                 "uzawa stops at this relative change of the multipliers"),
+          number("uzawa_max_iterations", {1, 100000000}, RBVI_AT(hf.uzawa.max_iterations),
+                 "largest number of iterations of uzawa"),
+          flag("uzawa_accelerated", RBVI_AT(hf.uzawa.accelerated),
+               "accelerate uzawa by Nesterov's extrapolation with restart"),
+          number("uzawa_step", positive, RBVI_AT(hf.uzawa.step),
+                 "step rho of uzawa; 0: 1 / largest eigenvalue of B A^-1 B^T")};
 }
 
 std::vector<Option> of_iterations() {
@@ -180,6 +189,11 @@ std::vector<Option> of_sweeps() {
           "share of a set that may fail; if more does, no model is made and nothing is measured")};
 }
 
+bool is_kept(const Option &option, const ToolOptions &options) {
+  const Use *runs = option.kept == nullptr ? option.use : option.kept;
+  return !option.kept_as.empty() && (runs == nullptr || is_of(*runs, options));
+}
+
 } // namespace
 
 const std::vector<Option> &tool_options() {
@@ -188,7 +202,8 @@ const std::vector<Option> &tool_options() {
     add("Run", of_runs(), all);
     add("Mesh", of_meshes(), all);
     add("High-fidelity solver", solver_rows(), all);
-    add("Large deformations", of_iterations(), all);
+    add("High-fidelity solver", only(use::uzawa, of_uzawa()), all);
+    add("Large deformations", only(use::following, of_iterations()), all);
     add("Sweep", of_sweeps(), all);
     for (Option &option : reduction_options())
       all.push_back(std::move(option));
@@ -206,7 +221,7 @@ const Option *find_option(const std::string &name) {
 std::map<std::string, std::string> kept_settings(const ToolOptions &options) {
   std::map<std::string, std::string> settings;
   for (const Option &option : tool_options())
-    if (option.kept != nullptr && option.kept(options))
+    if (is_kept(option, options))
       if (const std::string value = option.shown(options); !value.empty())
         settings[option.kept_as] = value;
   return settings;

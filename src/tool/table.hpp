@@ -2,7 +2,7 @@
 // by -help, kept in models and listed in cases/OPTIONS.md is made from it.
 #pragma once
 
-#include "rbvi/tool/options.hpp"
+#include "uses.hpp"
 
 #include <functional>
 
@@ -38,9 +38,9 @@ struct Option {
   std::function<void(const std::string &value, ToolOptions &options)> read{};
   /// The value in its place as text.
   std::function<std::string(const ToolOptions &options)> shown{};
-  /// Whether a model keeps it among its settings; null: none does.
-  bool (*kept)(const ToolOptions &options) = nullptr;
-  std::string kept_as{}; ///< name of that setting
+  const Use *use = nullptr;  ///< runs that it is for; null: all
+  std::string kept_as{};     ///< among the settings of a model of such runs; "": in none
+  const Use *kept = nullptr; ///< where these are not the runs whose models keep it
 };
 
 /// All options of rbvi that are not a scene's own, those of a group together.
@@ -67,9 +67,6 @@ std::vector<std::pair<std::string, Scene>> variants(const SceneEntry &entry);
 
 /// Parameters of the scene, and those that variants add, with "" and that choice.
 std::vector<std::pair<Parameter, std::string>> parameters_of(const SceneEntry &entry);
-
-/// Whether models of these options can be asked by their online_method.
-bool has_online_method(const ToolOptions &options);
 
 /// Throws bad_input for options that do not go together, or not with the scene.
 void check_rules(const ToolOptions &options);

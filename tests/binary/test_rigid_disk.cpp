@@ -143,7 +143,7 @@ TEST_F(RigidDisk, BadInputIsSaidInOneLine) {
   const std::string offline = "offline -case disk.yaml -out run ";
   expect_all_refused(
       {{offline + "-friction slippery", "use one of none, tresca, coulomb"},
-       {offline + "-eim_normal_tolerance 1e-3", "are for -multiplier_reduction collocated"},
+       {offline + "-eim_normal_tolerance 1e-3", "it is for -multiplier_reduction collocated"},
        {offline + "-multiplier_reduction collocated -friction none -eim_tangential_tolerance 1e-3",
         "contact with friction, which this scene has not"},
        {offline + "-arc_edges 7", "must be a multiple of 2, at least 8"},

@@ -2,11 +2,13 @@
 #include "rbvi/method/balance.hpp"
 
 #include "random_matrix.hpp"
+#include "rbvi/core/error.hpp"
 #include "rbvi/method/several_answers.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 namespace rbvi::balance_test {
 namespace {
@@ -166,6 +168,40 @@ TEST(Balance, ThatIsNotThereIsNotFound) {
   EXPECT_FALSE(found.converged);
   EXPECT_TRUE(found.flies);
   EXPECT_GT(found.excess.norm(), 0.5);
+}
+
+/// Two motions, each held by x + x^5, with no answer where one is further than 1.1.
+class Stiffening {
+public:
+  explicit Stiffening(double load) : load_(load) {}
+  SpringState operator()(const Vector &beta) {
+    last = beta;
+    ++solves;
+    if (beta.maxCoeff() > 1.1) throw failure("no answer here");
+    const Vector held = beta.array() + beta.array().pow(5);
+    return {beta + Vector::Constant(2, load_) - coupling_ * held, load_};
+  }
+  Vector last;
+  int solves = 0;
+
+private:
+  double load_;
+  Matrix coupling_ = Matrix{{1, 0.3}, {-0.2, 1}};
+};
+
+TEST(Balance, IsFoundByDifferencesBesideContactProblemsWithoutAnswer) {
+  Stiffening lengths(1.2);
+  const Balance found = find_balance(Vector::Zero(2), std::ref(lengths));
+  ASSERT_TRUE(found.converged);
+  EXPECT_EQ(found.solves, lengths.solves);
+  EXPECT_EQ(found.beta, lengths.last) << "the last one asked for";
+  EXPECT_LE((lengths(found.beta).lengths - found.beta).norm(), 1e-10);
+}
+
+TEST(Balance, IsNotFoundWhereTheContactProblemHasNoAnswer) {
+  Stiffening lengths(6);
+  EXPECT_FALSE(find_balance(Vector::Zero(2), std::ref(lengths)).converged);
+  EXPECT_THROW(find_balance(Vector::Constant(2, 2), std::ref(lengths)), Error) << "the first one";
 }
 
 } // namespace
