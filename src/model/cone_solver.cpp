@@ -142,8 +142,8 @@ void ConeSolver::check_pull(const ReducedAnswer &answer) const {
 }
 
 /// From the undeformed body, on the trace of the primal basis, until (A.8) is met in its norm. A
-/// state at which contact cannot be evaluated, as the bodies do not face each other there, is halved
-/// towards the last one at which it can.
+/// state at which contact cannot be evaluated, as the bodies do not face each other there, is
+/// halved towards the last one at which it can.
 void ConeSolver::solve_following(ReducedAnswer &answer) {
   constexpr int most_steps = 60;
   constexpr double tolerance = 1e-9;
@@ -198,15 +198,26 @@ void ConeSolver::solve_from_start(ReducedAnswer &answer) {
   finish(answer);
 }
 
+std::vector<Index> ConeSolver::known_active(Index sample) const {
+  std::vector<Index> active;
+  const Matrix &starts = model_.contact.starts;
+  for (Index j = 0; j < starts.rows() - model_.contact.free_modes; ++j)
+    if (starts(j, sample) > 0) active.push_back(j);
+  return active;
+}
+
 void ConeSolver::start(const FullMu &mu) {
+  const bool y_stays = model_.body.a.size() == 1 && model_.contact.b.size() == 1;
   const Start &start = starts_.nearest(parts_of_box(scene_.parameters, mu), [&](Index sample) {
+    const std::vector<Index> active = known_active(sample);
+    if (!active.empty() && !y_stays) return Start{active, {}, y_number_};
     const Vector there = model_.made.trained_mu.col(sample);
     ReducedAnswer unused;
     unused.mu = expand(scene_.parameters, {there.begin(), there.end()});
-    qp_.start_from({});
+    qp_.start_from(active);
     solve_from_start(unused);
     Start found{qp_.active(), {}, y_number_};
-    if (model_.body.a.size() == 1 && model_.contact.b.size() == 1) found.qp = qp_; // Y stays
+    if (y_stays) found.qp = qp_;
     return found;
   });
   if (start.qp && start.y_number == y_number_)

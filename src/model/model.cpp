@@ -67,6 +67,7 @@ ReducedModel leading(const ReducedModel &model, int n, int r) {
   keep_leading_nitsche(model.primal_size(), n, result);
   if (model.fields.basis.size() > 0) result.fields.basis = model.fields.basis.leftCols(n);
   if (n != model.primal_size()) result.fields.key.clear();
+  if (r != model.contact.generators || n != model.primal_size()) result.contact.starts.resize(0, 0);
   if (r != model.contact.generators || n != model.primal_size())
     result.made.validation_enriched = {};
   if (r != model.contact.generators || n != model.primal_size()) result.made.self_check = {};

@@ -185,6 +185,9 @@ template <class Store, class Model> void list_contact(const Store &store, Model 
                                  rows > 0 ? rows : std::numeric_limits<int>::max());
                 });
   store("contact/dual_basis", model.contact.dual_basis, Shape{any_size, model.contact.generators});
+  const bool known = model.contact.starts.size() > 0;
+  store("contact/starts", model.contact.starts,
+        Shape{known ? model.contact.generators : any_size, any_size});
   const bool partial = !model.contact.trace_dofs.empty();
   store("contact/trace_dofs", model.contact.trace_dofs, Indices{contact});
   store.ask("contact/trace_dofs is for a pair of spaces", [&] {
@@ -357,6 +360,11 @@ template <class Store, class Model> void list_history(const Store &store, Model 
     store(name, mu, Shape{mu.cols() == 0 ? any_size : model.scene.parameters.size(), any_size});
   };
   parameters("training/mu", model.made.trained_mu);
+  store.ask("contact/starts are of other samples", [&] {
+    const Index starts = model.contact.starts.cols();
+    return starts == 0 || model.made.trained_mu.cols() == 0 ||
+           starts == model.made.trained_mu.cols();
+  });
   parameters("training/failed", model.made.failed_mu);
   list_validation(store, "validation/enriched", model.made.validation_enriched);
   list_validation(store, "validation/decorrelated", model.made.validation_decorrelated);

@@ -247,6 +247,21 @@ void add_collocation(Problem &problem, const std::vector<Sample> &samples,
   result.model.made.histories["gcns/violation"] = nodes.violation;
 }
 
+/// ContactModel::starts. Collective.
+void add_starts_of_pair(const Problem &problem, const std::vector<Mu> &training,
+                        ReducedModel &model) {
+  Matrix starts = Matrix::Zero(model.contact.generators, std::ssize(training));
+  OnlineSolver solver(model, problem.scene());
+  take_turns(problem.comm(), training.size(), [&](std::size_t p) {
+    try {
+      starts.col(static_cast<Index>(p)) = solver.solve(training[p]).lambda;
+    } catch (const Error &) { // has no answer
+    }
+  });
+  over_ranks(problem.comm(), MPI_SUM, starts);
+  model.contact.starts = std::move(starts);
+}
+
 struct CheckedPair {
   ReducedBases bases;
   ReducedModel model;
@@ -306,6 +321,8 @@ void reduce_pair(Problem &problem, const std::vector<Sample> &samples, ReduceOpt
   result.bases = std::move(pair.bases);
   result.model = std::move(pair.model);
   result.ring = pair.ring;
+  const Stage stage(result.stages, stage::self_check);
+  add_starts_of_pair(problem, parameters_of(samples), result.model);
 }
 
 /// The published reduction, of one interface, interpolates B^n and B^tau apart. The others see B in

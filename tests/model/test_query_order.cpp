@@ -52,6 +52,29 @@ TEST(OrderOfQueries, MattersWhereItIsAskedFor) {
   EXPECT_LT((again.u - cold.solve(mu).u).norm(), 1e-10 * again.u.norm());
 }
 
+/// With one term of A and of B factors are kept beside the active sets.
+TEST(StoredStarts, AreThoseThatAreFoundWhenAskedFor) {
+  for (const int terms : {1, 2}) {
+    ReducedModel model = synthetic::random_model({6, 4, 8, terms, 1, 1, 2}, 5), stored = model;
+    const std::vector<Mu> training = parse_set(model.scene.parameters, "grid:2,2,2");
+    stored.contact.starts = Matrix::Zero(8, 8);
+    for (Index k = 0; k < 7; ++k) // not of the last one
+      stored.contact.starts.col(k) = OnlineSolver(model).solve(training[k]).lambda;
+    model.made.trained_mu = stored.made.trained_mu = as_columns(training, 3);
+    check_model(stored);
+    OnlineSolver finds(model), knows(stored);
+    for (const Mu &mu : parse_set(model.scene.parameters, "random:40:1")) {
+      const ReducedAnswer found = finds.solve(mu), known = knows.solve(mu);
+      EXPECT_LE(distance(known.lambda, found.lambda), 1e-12) << terms;
+      EXPECT_EQ(known.iterations, found.iterations) << terms;
+    }
+    EXPECT_EQ(OnlineSolver(stored).solve(training[3]).iterations, 0) << terms;
+    stored.contact.starts = Matrix::Zero(8, 3);
+    EXPECT_THROW(check_model(stored), Error) << "of other samples";
+    EXPECT_EQ(leading(stored, 9, 8).contact.starts.size(), 0) << "answers of another model";
+  }
+}
+
 TEST(SampleStarts, AreFoundOnceAtTheNearestSample) {
   const ParameterSpace space = all_free({{"a", "", 0, 1, 0.5}, {"b", "", 0, 10, 5}});
   const Matrix samples{{0.1, 0.9, 0.5}, {5, 5, 9}};

@@ -274,6 +274,17 @@ TEST(Reduce, AnEnrichedPairOfFullSizeIsTheModelItself) {
   EXPECT_NEAR(part.lambda[0], whole.lambda[0], 1e-6 * whole.lambda[0]);
 }
 
+TEST(Reduce, APairKeepsItsAnswersAtTheSamples) {
+  const Reduced r(SceneOptions{}, "grid:2,2,2", ReduceOptions{});
+  const Matrix &starts = r.model.contact.starts;
+  ASSERT_EQ(starts.cols(), std::ssize(r.samples));
+  OnlineSolver online(r.model);
+  for (std::size_t p = 0; p < r.samples.size(); ++p) {
+    const Vector lambda = online.solve(r.samples[p].mu).lambda;
+    EXPECT_LE((starts.col(static_cast<Index>(p)) - lambda).norm(), 1e-10 * lambda.norm());
+  }
+}
+
 TEST(Separate, RanksAreThoseOfTheMaps) {
   const std::vector<Mu> set = parse_set(make_scene("membrane_obstacle").parameters, "grid:3,3,3");
   Problem similarity(PETSC_COMM_WORLD, make_scene("membrane_obstacle"), {});

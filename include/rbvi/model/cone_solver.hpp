@@ -26,6 +26,8 @@ public:
   ReducedAnswer solve(const FullMu &mu, Relaxed relaxed) override;
 
 private:
+  /// Of the answer at a sample, where the model has it.
+  std::vector<Index> known_active(Index sample) const;
   /// Sets qp_ to where a query starts.
   void start(const FullMu &mu);
   void solve_from_start(ReducedAnswer &answer);

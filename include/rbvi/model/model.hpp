@@ -200,6 +200,9 @@ struct ContactModel {
   /// not known.
   Matrix trace;
   std::vector<int> trace_dofs; ///< contact dof of each row, rising; empty: all of them
+  /// Of a pair of spaces, R x samples: its own answers at the training parameters, zero where it has
+  /// none; queries start from their active sets. Empty: found when they are first asked for.
+  Matrix starts;
   std::optional<NodalLaw> law;
   std::optional<NitscheModel> nitsche;
   /// Without: R = 0, and b and g have no terms.
@@ -252,7 +255,7 @@ struct ReducedModel {
   bool evaluates_contact() const { return contact.b.size() == 0 && has_multipliers(); }
 };
 
-inline constexpr int model_schema = 20;
+inline constexpr int model_schema = 21;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (fields may all be empty).
