@@ -59,6 +59,15 @@ OutputModel restricted(const OutputModel &model, const Scene &scene,
 
 } // namespace
 
+bool fits(const OutputModel &outputs, const Scene &scene, Index cells) {
+  const Index terms = std::ssize(scene.a) + std::ssize(scene.f);
+  return std::ranges::all_of(outputs.cells.parts, [&](const OutputCells::Part &part) {
+    const auto below = [](int i, Index bound) { return i >= 0 && i < bound; };
+    return below(part.output, std::ssize(scene.outputs)) && below(part.cell, cells) &&
+           below(part.facet + 1, 4) && below(part.term, std::max<Index>(terms, 2));
+  });
+}
+
 CellOutputs::CellOutputs(const OutputModel &model, const Scene &scene)
     : model_(model), scene_(scene) {
   for (int output = 0; output < std::ssize(scene.outputs); ++output)

@@ -5,6 +5,7 @@
 #include "model_fields.hpp"
 #include "nitsche_part.hpp"
 #include "rbvi/contact/curve.hpp"
+#include "rbvi/model/cell_outputs.hpp"
 #include "rbvi/model/packed.hpp"
 
 #include <cmath>
@@ -198,15 +199,6 @@ template <class Store, class Model> void list_contact(const Store &store, Model 
             [&] { return std::ranges::is_sorted(model.contact.trace_dofs); });
   store("contact/trace", model.contact.trace,
         Shape{partial ? std::ssize(model.contact.trace_dofs) : contact, model.primal_size()});
-}
-
-inline bool fits(const OutputModel &outputs, const Scene &scene, Index cells) {
-  const Index terms = std::ssize(scene.a) + std::ssize(scene.f);
-  return std::ranges::all_of(outputs.cells.parts, [&](const OutputCells::Part &part) {
-    const auto below = [](int i, Index bound) { return i >= 0 && i < bound; };
-    return below(part.output, std::ssize(scene.outputs)) && below(part.cell, cells) &&
-           below(part.facet + 1, 4) && below(part.term, std::max<Index>(terms, 2));
-  });
 }
 
 template <class Store, class Model> void list_outputs(const Store &store, Model &model, int dim) {

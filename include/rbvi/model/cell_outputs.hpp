@@ -14,6 +14,9 @@ namespace rbvi {
 Vector imposed_at(const Scene &scene, const FullMu &mu, const Matrix &nodes,
                   const std::vector<int> &imposed_by);
 
+/// Whether the parts of outputs are of outputs, cells, facets and terms that there are.
+bool fits(const OutputModel &outputs, const Scene &scene, Index cells);
+
 class CellOutputs {
 public:
   /// Both must outlive it.
