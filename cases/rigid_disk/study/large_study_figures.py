@@ -75,7 +75,8 @@ def edge_order(answers, axis):
 
 
 def pressures(study, directory):
-    """Pressures on the body along its arc, and Coulomb's shear."""
+    """Pressures on the body along the middle of its arc, and Coulomb's shear."""
+    half = 0.5
     figure, axes = plt.subplots(1, 3, figsize=(13, 3.6), constrained_layout=True, sharex=True)
     for d, colour in zip(SHOWN_PRESSURES, COLOURS):
         for axis, kind, style in ((axes[0], "large", "-"), (axes[0], "radial", ":"),
@@ -86,12 +87,14 @@ def pressures(study, directory):
             curve = read_grid(path)
             name = "tangential_stress" if axis is axes[2] else "pressure"
             label = f"d = {d} m" if style == "-" else None
-            axis.plot(curve.points[:, 0], curve.of_nodes[name], style, color=colour, label=label)
+            middle = np.abs(curve.points[:, 0]) <= half
+            axis.plot(curve.points[middle, 0], curve.of_nodes[name][middle], style, color=colour,
+                      label=label)
     for axis, title in zip(axes, ("pressure (Pa); dotted: undeformed, radial normal",
                                   "pressure (Pa), Coulomb 0.2", r"$\lambda_\tau$ (Pa)")):
         axis.set_title(title, loc="left")
         axis.set_xlabel("x (m)")
-        axis.set_xlim(-0.5, 0.5)
+        axis.set_xlim(-half, half)
     axes[0].legend(fontsize=8)
     save(figure, directory, "pressures.png")
 
