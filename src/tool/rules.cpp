@@ -54,7 +54,8 @@ const Use *use_of(const std::string &name) {
 }
 
 /// Throws bad_input for options on the command line that nothing of the run uses, and for a free
-/// parameter that is one. In a case file they may wait for another command line.
+/// parameter that is one. In a case file they may wait for another command line, but for those that
+/// a reduction would take or tell of and not follow.
 void check_effect(const ToolOptions &options) {
   const auto check = [&](const std::string &name, const std::string &what) {
     const Use *use = use_of(name), *missed = use == nullptr ? nullptr : unmet(*use, options);
@@ -62,6 +63,8 @@ void check_effect(const ToolOptions &options) {
   };
   for (const std::string &name : options.command_line)
     check(name, "-" + name);
+  for (const std::string name : {"cone_level", "eim_normal_tolerance", "eim_tangential_tolerance"})
+    if (is_given(name)) check(name, "-" + name);
   const ParameterSpace &space = options.scene.parameters;
   for (int i = 0; i < space.size(); ++i)
     check(space.at(i).name, "the free parameter " + space.at(i).name);

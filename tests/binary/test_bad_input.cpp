@@ -197,11 +197,17 @@ TEST_P(BadInput, OverwritingInputs) {
 
 TEST_P(BadInput, OptionsOfBases) {
   const std::string offline = "offline -case case.yaml -out run ";
+  const std::string of = "case: " RBVI_CASES "/";
+  spill("nodal.yaml",
+        of + "membrane_obstacle/case.yaml\ncone_level: 1\nmesh_refine: 1\ncone_type: nodal\n");
+  spill("rows.yaml", of + "rigid_disk/case.yaml\neim_normal_tolerance: 1e-3\n");
   const std::string reference = "while reading option -reference_mu";
   refuse({{offline + "-cone_ring -1", "use a number from 0 to 1000"},
           {offline + "-cone_ring 0.5", "must be an integer"},
           {offline + "-cone_level 1", "-mesh_refine is 0"},
           {offline + "-cone_level 1 -mesh_refine 1 -cone_type nodal", "use -cone_type hybrid"},
+          {"offline -case nodal.yaml -out run", "use -cone_type hybrid"},
+          {"offline -case rows.yaml -out run", "it is for -multiplier_reduction collocated"},
           {"offline -case " RBVI_CASES
            "/rigid_disk -formulation nitsche -out run -mesh_refine 1 -cone_level 1",
            "Nitsche's method has no multipliers"},
