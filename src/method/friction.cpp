@@ -30,6 +30,8 @@ namespace {
 
 using namespace friction;
 
+constexpr double round_off = 1e-11; ///< of the violation of a law, relative
+
 void check(const Vector &q, const NodeLaws &laws, const Vector &start) {
   if (q.size() != laws.rows)
     throw failure("friction: the right-hand side has " + std::to_string(q.size()) +
@@ -73,6 +75,7 @@ public:
   }
 
 private:
+  static constexpr int usual_patience = 10; ///< pivoting::Policy
   enum class Outcome { converged, known, cycles, indefinite, limit };
 
   /// Along growing coefficients, from the last point that is reached.
@@ -111,17 +114,18 @@ private:
     h_.require(sets.support(laws));
   }
 
-  Outcome newton(const Laws &laws, State &point) {
+  Outcome newton(const Laws &laws, State &point, int patience = usual_patience) {
     const ActiveSets sets = contact_sets(laws, point.x);
     Verdict verdict = judge(diagonal(), laws, point, sets, options_.tolerance);
     keep(laws, point, sets, verdict);
-    return newton_from(laws, std::move(verdict.next), point);
+    return newton_from(laws, std::move(verdict.next), point, patience);
   }
 
   /// Newton from these sets until the laws hold or the policy gives up. In three dimensions the
   /// directions of slip vary continuously: there the sets alone do not tell that a step returns.
-  Outcome newton_from(const Laws &laws, ActiveSets sets, State &point) {
-    pivoting::Policy<std::string, double> policy(/*patience=*/10);
+  Outcome newton_from(const Laws &laws, ActiveSets sets, State &point,
+                      int patience = usual_patience) {
+    pivoting::Policy<std::string, double> policy(patience);
     const bool own = &laws == &laws_;
     for (;;) {
       std::string key;
@@ -158,34 +162,34 @@ private:
   /// The sets are right and the violations below tolerance; or as small as round-off lets them be:
   /// in two dimensions what a repeated step would give again, in three what it did not improve.
   bool settled(const Verdict &verdict, double least) const {
-    constexpr double round_off = 1e-11;
     if (verdict.changed) return false;
     if (verdict.residual <= options_.tolerance) return true;
     return verdict.residual <= round_off && (laws_.dim == 2 || verdict.residual >= 0.5 * least);
   }
 
-  /// The fixed point of the bounds, frozen in turn, with shorter steps where it does not contract;
-  /// and Newton whenever they settle. `point` is feasible.
+  /// The fixed point of the bounds, frozen in turn, with shorter steps where it turns back; and
+  /// Newton whenever they settle. `point` is feasible.
   Outcome backup(State point) {
-    double near = 0.1, part = 1, before = std::numeric_limits<double>::infinity();
+    double near = 0.5, part = 1;
+    Vector before;
     Laws frozen = laws_;
     frozen.coefficient.setZero();
     frozen.only_in_contact.assign(laws_.nodes, 0);
     frozen.threshold = laws_.bounds(point.x);
-    while (systems_left_ > 0) {
+    while (systems_left_ > 0 && result_.backup_steps < options_.max_iterations) {
       ++result_.backup_steps;
       if (!solve_frozen(frozen, 1e-2 * near, point)) return Outcome::indefinite;
-      const Vector bounds = laws_.bounds(point.x);
-      const double change = (bounds - frozen.threshold).cwiseAbs().maxCoeff();
-      if (change <= near * bounds.maxCoeff()) {
+      const Vector bounds = laws_.bounds(point.x), change = bounds - frozen.threshold;
+      if (change.cwiseAbs().maxCoeff() <= near * bounds.maxCoeff()) {
         near *= 0.1;
         State trial = evaluate(h_, q_, laws_.feasible(point.x));
-        const Outcome outcome = newton(laws_, trial);
+        const Outcome outcome = newton(laws_, trial, /*patience=*/2);
         if (outcome != Outcome::cycles) return outcome;
       }
-      if (change > 0.8 * before) part = std::max(0.1, 0.5 * part);
+      const bool turns = before.size() > 0 && change.dot(before) < 0;
+      part = turns ? std::max(0.1, 0.5 * part) : std::min(1.0, 2 * part);
       before = change;
-      frozen.threshold += part * (bounds - frozen.threshold);
+      frozen.threshold += part * change;
       point = evaluate(h_, q_, frozen.feasible(std::move(point.x)));
     }
     return Outcome::limit;
@@ -216,13 +220,7 @@ private:
 
   bool solve_frozen(const Laws &frozen, double tolerance, State &point) {
     prepare(frozen, point.x);
-    State trial = point;
-    const Outcome outcome = newton(frozen, trial);
-    if (outcome != Outcome::converged)
-      return outcome != Outcome::indefinite &&
-             minimise(h_, q_, frozen, tolerance, systems_left_, point);
-    point = std::move(trial);
-    return true;
+    return minimise(h_, q_, frozen, std::max(tolerance, round_off), systems_left_, point);
   }
 
   void keep(const Laws &laws, const State &point, const ActiveSets &sets, const Verdict &verdict) {

@@ -1,6 +1,12 @@
 #include "friction_convex.hpp"
 
+#include "order.hpp"
+
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
 
 namespace rbvi::friction {
 
@@ -30,12 +36,69 @@ void sweep(const LazyColumns &h, const Laws &frozen, State &point) {
   }
 }
 
-/// The part of the way to `aim` at which the function is least, at most 1.
-double shorten(const State &point, const State &aim) {
-  const Vector way = aim.x - point.x;
-  const double slope = way.dot(point.w), curvature = way.dot(aim.w - point.w);
-  if (!(slope < 0)) return 0;
-  return curvature > -slope ? -slope / curvature : 1;
+/// Held are the entries at a bound that the gradient presses on; all others are free.
+ActiveSets held_sets(const Vector &diagonal, const Laws &frozen, const State &point) {
+  constexpr double round_off = 1e-12;
+  ActiveSets sets(frozen.nodes, frozen.dim);
+  const Index count = frozen.dim - 1;
+  for (Index i = 0; i < frozen.nodes; ++i) {
+    sets.active[i] = point.x[i] > 0 || point.w[i] < 0;
+    const double bound = frozen.threshold[i];
+    if (bound == 0) continue;
+    const auto x = point.x.segment(frozen.tangent(i), count);
+    const bool presses = x.dot(point.w.segment(frozen.tangent(i), count)) <= 0;
+    const bool held = x.norm() >= (1 - round_off) * bound && presses;
+    sets.tangent[i] = held ? Tangent::slip : Tangent::stick;
+    if (held) sets.direction.col(i) = x.normalized();
+  }
+  set_curvature(diagonal, frozen, smooth_start(diagonal, frozen, point), sets);
+  return sets;
+}
+
+/// A half-line or disk that the way x + t d leaves.
+struct Stop {
+  double at; ///< t
+  Index first, count;
+};
+
+std::vector<Stop> stops_along(const Laws &frozen, const Vector &x, const Vector &d) {
+  std::vector<Stop> stops;
+  const Index count = frozen.dim - 1;
+  for (Index i = 0; i < frozen.nodes; ++i) {
+    if (d[i] < 0) stops.push_back({-x[i] / d[i], i, 1});
+    const Index t = frozen.tangent(i);
+    const auto from = x.segment(t, count), way = d.segment(t, count);
+    const double a = way.squaredNorm(), b = from.dot(way), bound = frozen.threshold[i];
+    if (a == 0) continue;
+    const double left = std::max(0.0, bound * bound - from.squaredNorm());
+    stops.push_back({(std::sqrt(b * b + a * left) - b) / a, t, count});
+  }
+  std::ranges::sort(stops, {}, &Stop::at);
+  return stops;
+}
+
+/// From the point towards `aim`, every entry (or disk) held from where it meets its bound, to where
+/// the function is least along that way. Whether it ends before anything is held.
+bool follow(const LazyColumns &h, const Laws &frozen, const Vector &aim, State &point) {
+  Vector d = aim - point.x, hd = Vector::Zero(d.size());
+  const std::vector<Stop> stops = stops_along(frozen, point.x, d);
+  for (Index j = 0; j < d.size(); ++j)
+    if (d[j] != 0) hd += d[j] * h.column(j);
+  double t = 0;
+  for (std::size_t k = 0;; ++k) {
+    const double slope = d.dot(point.w);
+    if (!(slope < 0)) return false;
+    const double least = -slope / d.dot(hd);
+    const double next =
+        k < stops.size() ? std::max(0.0, stops[k].at - t) : std::numeric_limits<double>::infinity();
+    const double step = std::min(least, next);
+    point.x += step * d;
+    point.w += step * hd;
+    t += step;
+    if (least <= next) return k == 0;
+    for (Index j = stops[k].first; j < stops[k].first + stops[k].count; ++j)
+      if (d[j] != 0) hd -= std::exchange(d[j], 0.0) * h.column(j);
+  }
 }
 
 } // namespace
@@ -44,23 +107,16 @@ bool minimise(LazyColumns &h, const Vector &q, const Laws &frozen, double tolera
               State &point) {
   ActiveSets sets = contact_sets(frozen, point.x);
   for (;;) {
-    Verdict verdict = judge(diagonal_of(h, q.size()), frozen, point, sets, tolerance);
+    const Vector diagonal = diagonal_of(h, q.size());
+    const Verdict verdict = judge(diagonal, frozen, point, sets, tolerance);
     if (verdict.residual <= tolerance || steps <= 0) return true;
     --steps;
-    sets = std::move(verdict.next);
+    sets = held_sets(diagonal, frozen, point);
     h.require(sets.support(frozen));
     State aim;
     if (System(h, frozen, sets).step(h, q, frozen, aim) != Solved::yes) return false;
-    aim = evaluate(h, q, frozen.feasible(std::move(aim.x)));
-    const double part = shorten(point, aim);
-    if (part == 1) {
-      point = std::move(aim);
-      continue;
-    }
-    point.x += part * (aim.x - point.x);
-    point.w += part * (aim.w - point.w);
-    sweep(h, frozen, point);
-    point = evaluate(h, q, std::move(point.x));
+    if (!follow(h, frozen, aim.x, point)) sweep(h, frozen, point);
+    point = evaluate(h, q, frozen.feasible(std::move(point.x)));
   }
 }
 

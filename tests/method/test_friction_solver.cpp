@@ -186,6 +186,35 @@ TEST(Friction, TheSafeguardTakesOverWhereNewtonCycles) {
   }
 }
 
+/// A soft layer between two bodies: what they slip grows along it, and the layer can slide as one.
+FrictionProblem sliding_layer(Index nodes, double slides, double offset) {
+  FrictionProblem p{Matrix::Zero(2 * nodes, 2 * nodes), Vector(2 * nodes), 2};
+  for (Index i = 0; i < nodes; ++i) {
+    for (Index j = 0; j < nodes; ++j) {
+      const double near = std::exp(-std::abs(static_cast<double>(i - j)) / 3);
+      p.h(i, j) = near;
+      p.h(nodes + i, nodes + j) = near + slides;
+      p.h(i, nodes + j) = p.h(nodes + j, i) = 0.1 * near * (i < j ? 1 : i > j ? -1 : 0);
+    }
+    p.q[i] = -1 - 0.3 * std::sin(static_cast<double>(i));
+    p.q[nodes + i] = 0.1 * ((static_cast<double>(i) + offset) / static_cast<double>(nodes) - 0.5);
+  }
+  return p;
+}
+
+TEST(Friction, ALayerThatSlidesAsOneTakesFewSystems) {
+  int taken_over = 0;
+  for (const double slides : {1.0, 10.0, 100.0, 1000.0})
+    for (const double coefficient : {0.01, 0.03, 0.1, 0.3})
+      for (const double offset : {-11.3, -4.0, 0.0, 7.7}) {
+        const FrictionResult result =
+            expect_solved(sliding_layer(40, slides, offset), {coefficient, 0, false});
+        EXPECT_LE(result.iterations, 20);
+        taken_over += result.backup_steps > 0;
+      }
+  EXPECT_GT(taken_over, 5);
+}
+
 TEST(Friction, NeverCallsAWrongAnswerConverged) {
   Random random(11);
   int unsolved = 0;
