@@ -1,6 +1,7 @@
 #include "rbvi/study/errors.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/model/packed.hpp"
 #include "rbvi/mor/cones.hpp"
 #include "rbvi/mor/stability.hpp"
@@ -286,6 +287,18 @@ ValidationErrors summary(const std::vector<const ModelErrors *> &sets) {
   for (double *sum : {&result.u_mean, &result.lambda_mean, &result.tangential_mean})
     if (*sum > 0) *sum /= result.count;
   return result;
+}
+
+std::string slow_query(const ReducedModel &model, double query, double solve) {
+  constexpr double part = 0.5;
+  if (!(query > 0 && solve > 0 && query >= part * solve)) return "";
+  const std::string fewer = "reduce to fewer functions (a larger -pod_tolerance";
+  return "a query takes " + short_number(1e3 * query) + " ms, a high-fidelity solve " +
+         short_number(1e3 * solve) + " ms: " + fewer +
+         (model.contact.generators > 0
+              ? ", a larger -cone_tolerance, or -cone_level, hats of a coarser mesh), or try "
+                "-multiplier_reduction condensed"
+              : ")");
 }
 
 } // namespace rbvi

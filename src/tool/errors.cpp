@@ -186,8 +186,8 @@ std::vector<OutputError> check_outputs(const ReducedModel &model, const Truths &
 
 } // namespace
 
-void check_errors(ReducedModel &model, const SparseMatrix &w, const Truths &validation,
-                  const Truths &boundary, const fs::path &out) {
+double check_errors(ReducedModel &model, const SparseMatrix &w, const Truths &validation,
+                    const Truths &boundary, const fs::path &out) {
   const Rows rows = rows_of(model, validation, w);
   print_rows("over " + std::to_string(validation.mu.size()) + " validation mu", rows);
   write_errors(out / "errors.csv", model.scene.parameters, validation, rows);
@@ -214,6 +214,7 @@ void check_errors(ReducedModel &model, const SparseMatrix &w, const Truths &vali
   std::vector<Mu> all = validation.mu;
   all.insert(all.end(), boundary.mu.begin(), boundary.mu.end());
   model.made.validated_mu = as_columns(all, model.scene.parameters.size());
+  return rows.front().second.seconds;
 }
 
 } // namespace rbvi

@@ -235,7 +235,10 @@ void command_verify(const ToolOptions &given) {
     make_directory(out);
     for (const char *of_another_model : {"infsup.csv", "infsup_training.csv", "stability.csv"})
       fs::remove(out / of_another_model);
-    check_errors(model, problem.w_product(), truths, boundary, out);
+    const double query = check_errors(model, problem.w_product(), truths, boundary, out);
+    if (const std::string slow = slow_query(model, query, sweep.report.seconds_per_solve);
+        !slow.empty())
+      std::cout << "warning: " << slow << '\n';
     look_for_other_answers(model, problem.scene(), from_columns(model.made.validated_mu));
     print_several_answers(std::cout, model);
     write_model(model, options.out / "model.h5");

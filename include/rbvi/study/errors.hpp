@@ -5,6 +5,8 @@
 #include "rbvi/model/online.hpp"
 #include "rbvi/sweep/sweep.hpp"
 
+#include <string>
+
 namespace rbvi {
 
 /// |u|_V of the whole displacement, the motion of the scene included; `u`: all dofs in natural
@@ -69,5 +71,9 @@ SubModel enriched_pair(const ReducedModel &model, int n, int r);
 
 /// Over the queries of some sets that have an answer; the others are counted.
 ValidationErrors summary(const std::vector<const ModelErrors *> &sets);
+
+/// What to try where a query takes half as long as a high-fidelity solve, or longer (seconds);
+/// empty where it is faster, or where either is not known (0).
+std::string slow_query(const ReducedModel &model, double query, double solve);
 
 } // namespace rbvi
