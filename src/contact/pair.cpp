@@ -4,9 +4,11 @@
 #include "rbvi/contact/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/formula.hpp"
+#include "rbvi/core/functions.hpp"
 #include "rbvi/element/imposed.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace rbvi {
 
@@ -49,6 +51,8 @@ private:
   };
   Curves curves(const std::vector<Point> &nodes) const;
   std::vector<Point> moves(const FullMu &mu) const;
+  Partners search(const FullMu &mu, const ContactState &state,
+                  const std::vector<Point> &moved) const;
   Partners partners(const FullMu &mu, const ContactState &state) const;
   PairOperators operators_of(const Partners &found, const ContactState &state) const;
   PairOperators operators_at(const FullMu &mu, const ContactState &state) const;
@@ -61,6 +65,7 @@ private:
   std::vector<CurveSection> sections_; ///< of the master curve
   std::vector<int> fixed_;             ///< per node of the master: bits of its components
   bool imposes_;                       ///< values on displacements that the kernels see
+  std::optional<Partners> at_rest_;    ///< small displacements, of a mesh that no parameter moves
 };
 
 PairInterface::PairInterface(const Scene &scene, InterfaceMesh interface_mesh, const Pair &pair)
@@ -95,6 +100,7 @@ PairInterface::PairInterface(const Scene &scene, InterfaceMesh interface_mesh, c
   dual_.points = multipliers_.points(reference.slave);
   dual_.components = friction() ? 2 : 1;
   dual_.gram = multipliers_.gram(reference.slave, dual_.components, scene.axisymmetric);
+  if (!pair.large && is_identity(scene_.map)) at_rest_ = search({}, {}, {});
 }
 
 PairInterface::Curves PairInterface::curves(const std::vector<Point> &nodes) const {
@@ -115,9 +121,10 @@ std::vector<Point> PairInterface::moves(const FullMu &mu) const {
   return result;
 }
 
-/// With gaps and slips but for the displacements of the columns.
-Partners PairInterface::partners(const FullMu &mu, const ContactState &state) const {
-  const std::vector<Point> rest = images(scene_.map, mu, mesh_.points), moved = moves(mu);
+/// With gaps but for the displacements of the columns, and for `moved` where they are small.
+Partners PairInterface::search(const FullMu &mu, const ContactState &state,
+                               const std::vector<Point> &moved) const {
+  const std::vector<Point> rest = images(scene_.map, mu, mesh_.points);
   Curves at_rest = curves(rest);
   const HatWeights hats = at_rest.slave.hats(scene_.axisymmetric);
   const bool vertical = is_vertical(pair_);
@@ -132,23 +139,31 @@ Partners PairInterface::partners(const FullMu &mu, const ContactState &state) co
     return find_partners(std::move(at.slave), std::move(at.master), pair_.discretisation,
                          std::move(field), hats);
   };
-  std::vector<Point> nodes = pair_.large ? rest : std::vector<Point>();
+  if (!pair_.large) return found_between(std::move(at_rest));
+  std::vector<Point> nodes = rest;
   for (std::size_t k = 0; k < 2 * nodes.size(); ++k) {
     if (!moved.empty()) nodes[k / 2][k % 2] += moved[k / 2][k % 2];
     if (const int dof = mesh_.dofs[k]; dof >= 0 && state.displacement.size() > 0)
       nodes[k / 2][k % 2] += state.displacement[dof];
   }
-  Partners found = found_between(pair_.large ? curves(nodes) : std::move(at_rest));
-  for (std::vector<PairPoint> *points : {&found.points, &found.vertices}) {
-    if (pair_.large) set_gaps(at_rest.slave, at_rest.master, *points);
-    if (moved.empty()) continue;
-    const Curves by = curves(moved);
+  Partners found = found_between(curves(nodes));
+  for (std::vector<PairPoint> *points : {&found.points, &found.vertices})
+    set_gaps(at_rest.slave, at_rest.master, *points);
+  return found;
+}
+
+/// With gaps and slips but for the displacements of the columns.
+Partners PairInterface::partners(const FullMu &mu, const ContactState &state) const {
+  const std::vector<Point> moved = moves(mu);
+  Partners found = at_rest_ ? *at_rest_ : search(mu, state, moved);
+  if (moved.empty()) return found;
+  const Curves by = curves(moved);
+  for (std::vector<PairPoint> *points : {&found.points, &found.vertices})
     for (PairPoint &p : *points) {
       const Point apart = by.slave.at(p.slave_edge, p.s) - by.master.at(p.master_edge, p.t);
       p.gap += dot(p.normal, apart);
       p.slip = p.normal[1] * apart[0] - p.normal[0] * apart[1];
     }
-  }
   return found;
 }
 

@@ -158,6 +158,10 @@ Named<PointMap> identity() {
   return identity_maker();
 }
 
+bool is_identity(const Named<PointMap> &map) {
+  return map.record.name == identity_maker.name;
+}
+
 Named<PointValue> everywhere(double value) {
   return value_maker({{"value", {value}}});
 }

@@ -87,6 +87,7 @@ Named<Coefficient> parameter(int index);
 Named<Coefficient> constant(double value);
 
 Named<PointMap> identity();
+bool is_identity(const Named<PointMap> &map);
 /// The same at all points for all mu.
 Named<PointValue> everywhere(double value);
 Named<PointMap> everywhere(const Point &vector);
