@@ -51,7 +51,8 @@ public:
       : h_(h), q_(q), laws_(laws), options_(options), kept_(kept), best_sets_(laws.nodes, laws.dim),
         systems_left_(options.max_iterations) {}
 
-  FrictionAnswer run(const Vector &start, bool by_rule) {
+  /// `searches`: for another answer, where Newton's method goes straight to it.
+  FrictionAnswer run(const Vector &start, bool by_rule, bool searches) {
     Outcome outcome;
     if (by_rule && laws_.follow_pressure()) {
       outcome = continued_from_no_friction(start);
@@ -65,6 +66,7 @@ public:
       State point = evaluate(h_, q_, Vector::Zero(q_.size()));
       outcome = newton(laws_, point);
     }
+    if (outcome == Outcome::cycles && searches) outcome = Outcome::known;
     if (outcome == Outcome::cycles) {
       State point = evaluate(h_, q_, laws_.feasible(best_.x));
       outcome = laws_.jump() && laws_.coefficient.isZero(0) ? settle_contact(std::move(point))
@@ -76,6 +78,7 @@ public:
 
 private:
   static constexpr int usual_patience = 10; ///< pivoting::Policy
+  /// known: not to be followed any further.
   enum class Outcome { converged, known, cycles, indefinite, limit };
 
   /// Along growing coefficients, from the last point that is reached.
@@ -292,11 +295,11 @@ struct FrictionSolver::Parts {
         ordered(order.inwards(columns)), h(ordered, order.size()) {
     rbvi::check(given);
   }
-  FrictionAnswer run(const Vector &start, bool rule) {
+  FrictionAnswer run(const Vector &start, bool rule, bool searches) {
     check(q, given, start);
     const Vector right = order.inwards(q), from = order.inwards(start);
     FrictionAnswer result = given.friction()
-                                ? Solver(h, right, laws, options, kept).run(from, rule)
+                                ? Solver(h, right, laws, options, kept).run(from, rule, searches)
                                 : FrictionAnswer{without_friction(h, right, laws, from, options)};
     for (Vector *part : {&result.x, &result.w, &result.start})
       *part = order.outwards(*part);
@@ -325,11 +328,11 @@ FrictionAnswer FrictionSolver::answer(const Vector &q, const Vector &start, bool
   parts_->options = options;
   parts_->by_rule = by_rule;
   parts_->kept.known.clear();
-  return parts_->run(start, by_rule);
+  return parts_->run(start, by_rule, false);
 }
 
 FrictionAnswer FrictionSolver::another(const Vector &start, bool by_rule) {
-  return parts_->run(start, by_rule);
+  return parts_->run(start, by_rule, true);
 }
 
 Matrix FrictionSolver::change(const Matrix &of_q) const {
