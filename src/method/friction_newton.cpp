@@ -3,6 +3,7 @@
 #include "rbvi/core/largest.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -11,7 +12,8 @@ namespace rbvi::friction {
 namespace {
 
 double tangential_diagonal(const Vector &diagonal, const Laws &laws, Index i) {
-  return diagonal.segment(laws.tangent(i), laws.dim - 1).sum() / (laws.dim - 1);
+  const Index t = laws.tangent(i);
+  return laws.dim == 2 ? diagonal[t] : (diagonal[t] + diagonal[t + 1]) / 2;
 }
 
 /// Whether its determinant is negative.
@@ -30,7 +32,7 @@ public:
   Verdict all() {
     for (Index i = 0; i < laws_.nodes; ++i) {
       normal(i);
-      if (laws_.dim > 1) tangential(i);
+      if (laws_.dim > 1) tangent_of(i);
       verdict_.changed = verdict_.changed || verdict_.next.is_active(i) != sets_.is_active(i) ||
                          verdict_.next.tangent_at(i) != sets_.tangent_at(i) || turned(i);
     }
@@ -59,7 +61,7 @@ private:
     const double y = x * root(i) - counted / root(i);
     next = sets_.is_active(i) && !laws_.at_node(i).jumps() ? y >= -tolerance_ * largest_ : y > 0;
   }
-  void tangential(Index i) {
+  void tangent_of(Index i) {
     Tangent &next = verdict_.next.tangent[i];
     const double bound = laws_.bound(i, point_.x[i]);
     const bool known = diagonal_[laws_.tangent(i)] != 0;
@@ -73,43 +75,60 @@ private:
     else
       next = sets_.tangent_at(i);
   }
+  /// Tangential components of a node; in the plane the second one is zero.
+  using Pair = std::array<double, 2>;
+  Pair tangential(const Vector &of, Index i) const {
+    const Index t = laws_.tangent(i);
+    return {of[t], laws_.dim == 3 ? of[t + 1] : 0};
+  }
+  static double size_of(const Pair &p) {
+    return p[1] == 0 ? std::abs(p[0]) : std::hypot(p[0], p[1]);
+  }
+  static double dot(const Pair &p, const Pair &q) { return p[0] * q[0] + p[1] * q[1]; }
+  void slip(Index i, const Pair &along, double size) {
+    verdict_.next.tangent[i] = Tangent::slip;
+    for (int k = 0; k < laws_.dim - 1; ++k)
+      verdict_.next.direction(k, i) = along[k] / size;
+  }
   /// The bound of a node that just came into contact was zero: it slips against its w_tau.
   void begin(Index i) {
-    const auto w = point_.w.segment(laws_.tangent(i), laws_.dim - 1);
-    const double size = w.norm();
-    verdict_.next.tangent[i] = size > 0 ? Tangent::slip : Tangent::stick;
-    if (size > 0) verdict_.next.direction.col(i) = -w / size;
+    const Pair w = tangential(point_.w, i);
+    const double size = size_of(w);
+    verdict_.next.tangent[i] = Tangent::stick;
+    if (size > 0) slip(i, w, -size);
   }
   void measure(Index i, double bound) {
-    const Index t = laws_.tangent(i), count = laws_.dim - 1;
-    const auto x = point_.x.segment(t, count), w = point_.w.segment(t, count);
-    const double size = x.norm(), terms = point_.terms.segment(t, count).norm();
+    const Pair x = tangential(point_.x, i), w = tangential(point_.w, i);
+    const double size = size_of(x), terms = size_of(tangential(point_.terms, i));
     if (size == 0 && bound == 0) return;
     violated((size - bound) * std::sqrt(tangential_diagonal(diagonal_, laws_, i)), largest_);
     if (size < bound * (1 - 1e-14)) {
-      violated(w.norm(), terms);
+      violated(size_of(w), terms);
       return;
     }
-    const double along = x.dot(w) / size;
+    const double along = dot(x, w) / size;
     violated(along, terms);
-    if (count > 1) violated((w - along / size * x).norm(), terms);
+    if (laws_.dim == 3) violated(std::abs(x[0] * w[1] - x[1] * w[0]) / size, terms);
   }
   void predict(Index i, double bound) {
-    const Index t = laws_.tangent(i), count = laws_.dim - 1;
     const double diagonal = tangential_diagonal(diagonal_, laws_, i);
-    const auto w = point_.w.segment(t, count);
-    Vector y = point_.x.segment(t, count);
-    if (w.norm() > tolerance_ * point_.terms.segment(t, count).norm()) y -= w / diagonal;
-    const double size = y.norm();
+    const Pair w = tangential(point_.w, i);
+    Pair y = tangential(point_.x, i);
+    if (size_of(w) > tolerance_ * size_of(tangential(point_.terms, i)))
+      y = {y[0] - w[0] / diagonal, y[1] - w[1] / diagonal};
+    const double size = size_of(y);
     // A node that slips does not turn back before it has been stuck: otherwise it may do so
     // forever.
     const bool slips = sets_.tangent_at(i) == Tangent::slip
-                           ? size >= bound * (1 - 1e-15) && y.dot(sets_.direction.col(i)) > 0
+                           ? size >= bound * (1 - 1e-15) && dot(y, direction(i)) > 0
                            : size > bound + tolerance_ * largest_ / std::sqrt(diagonal);
-    verdict_.next.tangent[i] = slips ? Tangent::slip : Tangent::stick;
+    verdict_.next.tangent[i] = Tangent::stick;
     if (!slips) return;
-    verdict_.next.direction.col(i) = y / size;
+    slip(i, y, size);
     verdict_.next.curvature[i] = std::max(0.0, size - bound) * diagonal / bound;
+  }
+  Pair direction(Index i) const {
+    return {sets_.direction(0, i), laws_.dim == 3 ? sets_.direction(1, i) : 0};
   }
 
   const Vector &diagonal_;
