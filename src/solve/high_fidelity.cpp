@@ -23,6 +23,7 @@ namespace rbvi {
 namespace {
 
 constexpr double largest_residual = 1e-10; ///< KKT, of an active-set method
+constexpr double largest_of_uzawa = 1e-2;  ///< small steps alone do not tell of an answer
 constexpr double refined_above = 1e-11;
 constexpr int most_refinements = 2;
 
@@ -343,6 +344,11 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
                   ": is the mesh or the parameter extreme? Try "
                   "-hf_pc_factor_mat_solver_type mumps, or with an iterative -hf_ksp_type a "
                   "smaller -hf_ksp_rtol");
+  if (options_.method == HfMethod::uzawa &&
+      !(result.residual <= std::max(largest_of_uzawa, 10 * options_.uzawa.tolerance)))
+    throw failure("Uzawa's steps are below -uzawa_tolerance, and a KKT residual of " +
+                  short_number(result.residual) +
+                  " is left: lower it, or try -uzawa_accelerated or -hf_method active_set");
   solved_.push_back(solved(mu, result));
   return std::move(static_cast<HfSolution &>(result));
 }
