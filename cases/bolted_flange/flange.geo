@@ -5,17 +5,18 @@ If (!Exists(edges))
   edges = 60; // on the top of the gasket
 EndIf
 h = 30 / edges;
-coarse = 4 * h;
+coarse = 8 * h;
+fine = h / 4; // where stresses are singular: the corner of hub and plate, the rim that meets the stop
 
 Point(1) = {101.5, 2, 0, coarse};
 Point(2) = {112, 2, 0, h};
 Point(3) = {142, 2, 0, h};
-Point(4) = {172, 2, 0, 2 * h};
-Point(5) = {187.5, 2, 0, 2 * h};
+Point(4) = {172, 2, 0, coarse};
+Point(5) = {187.5, 2, 0, fine};
 Point(6) = {187.5, 36, 0, coarse};
 Point(7) = {175, 36, 0, coarse};
 Point(8) = {145, 36, 0, coarse};
-Point(9) = {122, 36, 0, coarse};
+Point(9) = {122, 36, 0, fine};
 Point(10) = {109.5, 90, 0, coarse};
 Point(11) = {109.5, 202, 0, coarse};
 Point(12) = {101.5, 202, 0, coarse};
@@ -36,8 +37,8 @@ Line(23) = {23, 24};
 Line(24) = {24, 21};
 Curve Loop(2) = {21:24};
 Plane Surface(2) = {2};
-Transfinite Curve {21, 23} = edges + 1;
-Transfinite Curve {2} = edges + 1;
+Transfinite Curve {21, 23} = edges + 1 Using Bump 0.5; // friction is singular at both ends
+Transfinite Curve {2} = edges + 1 Using Bump 0.5;
 
 Physical Surface("flange") = {1};
 Physical Surface("gasket") = {2};

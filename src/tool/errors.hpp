@@ -12,6 +12,6 @@ namespace rbvi {
 /// may share a scale (share_scale); `boundary` may be empty. Returns the seconds of a
 /// query, the median. Serial.
 double check_errors(ReducedModel &model, const SparseMatrix &w, const Truths &validation,
-                  const Truths &boundary, const std::filesystem::path &out);
+                    const Truths &boundary, const std::filesystem::path &out);
 
 } // namespace rbvi

@@ -13,7 +13,6 @@ iterations, whose last change is next to round-off.
 
 import csv
 import os
-import subprocess
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
@@ -21,6 +20,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
+from at_once import run_program
 from every_scene import every_scene
 
 TABLE = Path(__file__).resolve().parent / "baseline.csv"
@@ -34,7 +34,7 @@ WITHIN_THEIR_ERROR = {("nitsche_coulomb_interpolated", "reduced"): 1e-3}
 
 
 def call(*command):
-    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
+    done = run_program(command)
     if done.returncode != 0:
         sys.exit(f"{' '.join(map(str, command))}\n{done.stderr}")
 

@@ -7,10 +7,13 @@ queries, one of them also in the reverse order.
 
 import csv
 import shutil
-import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from at_once import run_program
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 FEW = {
@@ -48,7 +51,7 @@ BY_STATES = {"rigid_disk/published_large": 1e-3}
 
 
 def call(*command):
-    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
+    done = run_program(command)
     if done.returncode != 0:
         raise RuntimeError(f"{' '.join(map(str, command))}\n{done.stderr}")
     return done.stdout

@@ -9,13 +9,13 @@ u.vtu of every scene and formulation, OUT/checks/NAME what rbvi check draws of s
 """
 
 import shutil
-import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
+from at_once import run_program
 from every_scene import CASES, every_scene
 
 DISK = ["-case", CASES / "rigid_disk/case.yaml"]
@@ -50,7 +50,7 @@ GROWN = "disk_none"  # by rbvi bench -bench_growth
 
 
 def call(*command):
-    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
+    done = run_program(command)
     if done.returncode != 0:
         raise RuntimeError(f"{' '.join(map(str, command))}\n{done.stderr}")
 
