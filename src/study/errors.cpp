@@ -289,16 +289,13 @@ ValidationErrors summary(const std::vector<const ModelErrors *> &sets) {
   return result;
 }
 
-std::string slow_query(const ReducedModel &model, double query, double solve) {
+std::string slow_query(double query, double solve) {
   constexpr double part = 0.5;
   if (!(query > 0 && solve > 0 && query >= part * solve)) return "";
-  const std::string fewer = "reduce to fewer functions (a larger -pod_tolerance";
   return "a query takes " + short_number(1e3 * query) + " ms, a high-fidelity solve " +
-         short_number(1e3 * solve) + " ms: " + fewer +
-         (model.contact.generators > 0
-              ? ", a larger -cone_tolerance, or -cone_level, hats of a coarser mesh), or try "
-                "-multiplier_reduction condensed"
-              : ")");
+         short_number(1e3 * solve) +
+         " ms: reduce to fewer functions (larger tolerances, or -cone_level where multipliers have "
+         "hat functions)";
 }
 
 } // namespace rbvi

@@ -130,14 +130,17 @@ std::vector<Option> solver_rows() {
 }
 
 std::vector<Option> of_uzawa() {
-  return {number("uzawa_tolerance", {1e-15, 0.1}, RBVI_AT(hf.uzawa.tolerance),
-                 "uzawa stops at this relative change of the multipliers"),
-          number("uzawa_max_iterations", {1, 100000000}, RBVI_AT(hf.uzawa.max_iterations),
-                 "largest number of iterations of uzawa"),
-          flag("uzawa_accelerated", RBVI_AT(hf.uzawa.accelerated),
-               "accelerate uzawa by Nesterov's extrapolation with restart"),
-          number("uzawa_step", positive, RBVI_AT(hf.uzawa.step),
-                 "step rho of uzawa; 0: 1 / largest eigenvalue of B A^-1 B^T")};
+  return {
+      number(
+          "uzawa_tolerance", {1e-15, 0.1}, RBVI_AT(hf.uzawa.tolerance),
+          "uzawa stops at this relative change of the multipliers; a KKT residual above 1e-2, or "
+          "10 times this, is an error then"),
+      number("uzawa_max_iterations", {1, 100000000}, RBVI_AT(hf.uzawa.max_iterations),
+             "largest number of iterations of uzawa"),
+      flag("uzawa_accelerated", RBVI_AT(hf.uzawa.accelerated),
+           "accelerate uzawa by Nesterov's extrapolation with restart"),
+      number("uzawa_step", positive, RBVI_AT(hf.uzawa.step),
+             "step rho of uzawa; 0: 1 / largest eigenvalue of B A^-1 B^T")};
 }
 
 std::vector<Option> of_iterations() {

@@ -204,8 +204,8 @@ std::vector<Sample> boundary_samples(MPI_Comm world, const Groups &groups, Probl
   return std::move(sweep.samples);
 }
 
-void tell_of_speed(const ReducedModel &model, double query, double solve) {
-  const std::string slow = slow_query(model, query, solve);
+void tell_of_speed(double query, double solve) {
+  const std::string slow = slow_query(query, solve);
   if (!slow.empty()) std::cout << "warning: " << slow << '\n';
 }
 
@@ -241,7 +241,7 @@ void command_verify(const ToolOptions &given) {
     for (const char *of_another_model : {"infsup.csv", "infsup_training.csv", "stability.csv"})
       fs::remove(out / of_another_model);
     const double query = check_errors(model, problem.w_product(), truths, boundary, out);
-    tell_of_speed(model, query, sweep.report.seconds_per_solve);
+    tell_of_speed(query, sweep.report.seconds_per_solve);
     look_for_other_answers(model, problem.scene(), from_columns(model.made.validated_mu));
     print_several_answers(std::cout, model);
     write_model(model, options.out / "model.h5");

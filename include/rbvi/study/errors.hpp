@@ -74,6 +74,6 @@ ValidationErrors summary(const std::vector<const ModelErrors *> &sets);
 
 /// What to try where a query takes half as long as a high-fidelity solve, or longer (seconds);
 /// empty where it is faster, or where either is not known (0).
-std::string slow_query(const ReducedModel &model, double query, double solve);
+std::string slow_query(double query, double solve);
 
 } // namespace rbvi
