@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rbvi {
 
@@ -225,6 +226,16 @@ Vector nitsche_residual(const std::vector<NitscheFace> &faces, const Vector &u,
                         const Vector &bounds) {
   return tested(faces, u.size(),
                 terms_of(faces).weighted(&PointTerm::slope, nitsche_pressures(faces, u), bounds));
+}
+
+double nitsche_round_off(const std::vector<NitscheFace> &faces, const Vector &u) {
+  Matrix sizes = Matrix::Zero(4 * std::ssize(faces), 2);
+  at_all_points(faces, [&](const NitscheFace &face, const NitschePoint &point, Index i) {
+    sizes(i, 0) = -point.normal(face.gamma).cwiseAbs().dot(local(face.dofs, u).cwiseAbs()) -
+                  face.gamma * std::abs(point.facing.gap);
+  });
+  return std::numeric_limits<double>::epsilon() *
+         tested(faces, u.size(), terms_of(faces).weighted(&PointTerm::slope, sizes, {})).norm();
 }
 
 std::vector<FaceBlock> nitsche_tangent(const std::vector<NitscheFace> &faces,

@@ -2,6 +2,7 @@
 
 #include "nitsche_frames.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/largest.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/vectors.hpp"
 
@@ -250,7 +251,8 @@ double NitscheSystem::relative_residual(Vec u) {
 int NitscheSystem::newton(Vec u, std::string &reason) {
   failed = nullptr;
   residual(u, force.get()); // sets the scale
-  RBVI_CALL(SNESSetTolerances(snes.get(), std::max(small_residual, tolerance * scale), 0,
+  const double left = nitsche_round_off(faces, on_layer(u));
+  RBVI_CALL(SNESSetTolerances(snes.get(), largest({small_residual, tolerance * scale, left}), 0,
                               PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   const PetscErrorCode code = SNESSolve(snes.get(), nullptr, u);
   if (failed) std::rethrow_exception(failed);

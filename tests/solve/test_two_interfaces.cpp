@@ -127,6 +127,23 @@ TEST(TwoInterfaces, ByNitschesMethodWithBoundsDoNotPenetrate) {
   EXPECT_LE((held.u - free.u).norm(), 1e-2 * free.u.norm());
 }
 
+/// Where gamma is large P_n is the difference of large numbers, and their round-off ends Newton's
+/// method; the bounds change next to nothing.
+TEST(NitscheBounds, AreKeptWhereGammaIsLarge) {
+  const SceneOptions stiff{
+      {"formulation", "nitsche"}, {"nitsche_gamma0", "1154"}, {"friction", "none"}};
+  Problem problem(PETSC_COMM_WORLD, make_scene("rigid_disk", stiff), {});
+  HfOptions bounded;
+  bounded.nitsche.nonpenetration = true;
+  for (const double radius : {1.0, 1.3}) {
+    const HfSolution free = HighFidelity(problem, {}).solve({radius}),
+                     held = HighFidelity(problem, bounded).solve({radius});
+    EXPECT_LE(held.iterations, 20);
+    EXPECT_LE(*held.outputs.max_penetration, 1e-14);
+    EXPECT_NEAR(*held.outputs.energy, *free.outputs.energy, 1e-8);
+  }
+}
+
 /// Bounds at nodes whose normals differ from interface to interface.
 TEST(TwoInterfaces, BoundsAtNodesHaveTheSameAnswer) {
   HfOptions vi;

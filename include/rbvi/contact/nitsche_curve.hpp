@@ -141,6 +141,9 @@ double nitsche_energy(const std::vector<NitscheFace> &faces, const Vector &u, co
 Vector nitsche_residual(const std::vector<NitscheFace> &faces, const Vector &u,
                         const Vector &bounds);
 
+/// What round-off in P_n, the difference of large numbers where gamma is large, leaves of its norm.
+double nitsche_round_off(const std::vector<NitscheFace> &faces, const Vector &u);
+
 /// Their Hessian at given pressures, a block for each face, the bounds being fixed: b_gamma^n
 /// (4.24a), b_gamma^tau (4.43a), (4.55a); and what their axes turn by.
 std::vector<FaceBlock> nitsche_tangent(const std::vector<NitscheFace> &faces,
