@@ -1,9 +1,11 @@
 #include "rbvi/mor/answered_responses.hpp"
 
+#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/model/free_bodies.hpp"
 #include "rbvi/model/law_solver.hpp"
+#include "rbvi/model/reduced_body.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/small_svd.hpp"
 #include "rbvi/par/turns.hpp"
@@ -17,22 +19,55 @@ namespace {
 
 constexpr std::size_t at_a_time = 100, most_queries = 10000; ///< queries
 
-/// The multipliers of the loads at each mu, zero where the law has no answer. Collective.
-Matrix answers_at(const Problem &problem, const CondensedLoads &loads, const ReducedModel &model,
-                  QueryMethod &solver, const std::vector<Mu> &set) {
-  Matrix answers = Matrix::Zero(loads.columns.cols(), std::ssize(set));
+// Parts of a tolerance, for what is not taken, what comes between answers, what few directions
+// leave.
+constexpr double not_taken = 0.1, between = 0.5, of_few = 0.4;
+
+/// `part` of the answer at each mu, `size` numbers, zero where the law has none. Collective.
+template <class Part>
+Matrix parts_at(const Problem &problem, const ReducedModel &model, QueryMethod &solver,
+                const std::vector<Mu> &set, Index size, Part &&part) {
+  Matrix parts = Matrix::Zero(size, std::ssize(set));
   take_turns(problem.comm(), set.size(), [&](std::size_t p) {
     try {
       const Scene &scene = problem.scene();
-      const ReducedAnswer answer =
-          solve_balanced(solver, model, scene, expand(scene.parameters, set[p]));
-      answers.col(p) =
-          !loads.units.empty() ? answer.reaction : Vector(answer.theta_b[0] * answer.lambda);
+      parts.col(static_cast<Index>(p)) =
+          part(solve_balanced(solver, model, scene, expand(scene.parameters, set[p])));
     } catch (const Error &) { // the self-check tells of such mu
     }
   });
-  over_ranks(problem.comm(), MPI_SUM, answers);
-  return answers;
+  over_ranks(problem.comm(), MPI_SUM, parts);
+  return parts;
+}
+
+/// `part` of what the model answers at the training parameters, at corners and faces of the box and
+/// at random ones, a hundred at a time, to `take`, until it returns false for some of these: there
+/// was no more in them. Collective. Throws failure where the law has no answer at any of the first,
+/// or always new ones.
+template <class Part, class Take>
+void take_answers(const Problem &problem, const ReducedModel &model, Index size, Part &&part,
+                  Take &&take) {
+  std::vector<Mu> set;
+  for (const auto &training : model.contact.law->starts_mu.colwise())
+    set.emplace_back(training.begin(), training.end());
+  const std::vector<Mu> boundary = corners_and_faces(problem.scene().parameters);
+  set.insert(set.end(), boundary.begin(), boundary.end());
+  const auto solver = law_solver(model, problem.scene(), problem.contact());
+  Matrix answers = parts_at(problem, model, *solver, set, size, part);
+  if (answers.isZero(0)) throw failure("the law of contact has no answer at any training mu");
+  ParameterReader random(problem.scene().parameters,
+                         "random:" + std::to_string(most_queries) + ":29");
+  take(answers);
+  do {
+    set.clear();
+    for (std::optional<Mu> mu; set.size() < at_a_time && (mu = random.next());)
+      set.push_back(*mu);
+    if (set.empty())
+      throw failure("the responses to the answers of the law go on after " +
+                    std::to_string(most_queries) +
+                    " of them: use a smaller box, or -response_tolerance 0");
+    answers = parts_at(problem, model, *solver, set, size, part);
+  } while (take(answers));
 }
 
 } // namespace
@@ -92,35 +127,75 @@ int append_answered_responses(Problem &problem, const CondensedLoads &loads,
   const CondensedOperator &condensed = model.contact.law->condensed;
   const Index size = loads.columns.cols();
   ResponseDirections directions((condensed.terms * condensed.shape).reshaped(size, size));
-  std::vector<Mu> set;
-  for (const auto &training : model.contact.law->starts_mu.colwise())
-    set.emplace_back(training.begin(), training.end());
-  const Mu any = set.front();
-  const auto solver = law_solver(model, problem.scene(), problem.contact());
-  Matrix answers = answers_at(problem, loads, model, *solver, set);
-  if (answers.isZero(0)) throw failure("the law of contact has no answer at any training mu");
-  ParameterReader random(problem.scene().parameters,
-                         "random:" + std::to_string(most_queries) + ":29");
-  // A part of the tolerance each: for what is not taken, what comes between answers, what the few
-  // directions leave.
-  constexpr double not_taken = 0.1, between = 0.5, of_few = 0.4;
-  do {
+  const auto multipliers = [&](const ReducedAnswer &answer) {
+    return !loads.units.empty() ? answer.reaction : Vector(answer.theta_b[0] * answer.lambda);
+  };
+  take_answers(problem, model, size, multipliers, [&](const Matrix &answers) {
+    if (directions.left(answers) <= between * tolerance) return false; // infinite before the first
     directions.add(answers, not_taken * tolerance);
-    set.clear();
-    for (std::optional<Mu> mu; set.size() < at_a_time && (mu = random.next());)
-      set.push_back(*mu);
-    if (set.empty())
-      throw failure("the responses to the answers of the law go on after " +
-                    std::to_string(most_queries) +
-                    " of them: use a smaller box, or -response_tolerance 0");
-    answers = answers_at(problem, loads, model, *solver, set);
-  } while (directions.left(answers) > between * tolerance);
+    return true;
+  });
+  const Mu any(model.contact.law->starts_mu.col(0).begin(),
+               model.contact.law->starts_mu.col(0).end());
   ResponseSolver body(problem.assemble(any).a, problem.trace(), "hf_");
   constexpr double dependent = 1e-9; // of a response's own norm: the modes hold it
   return static_cast<int>(append_fields(body,
                                         loads.columns * directions.coefficients(of_few * tolerance),
                                         modes, dependent, nullptr)
                               .size());
+}
+
+namespace {
+
+/// Each over its norm, but for those below a part of the largest so far.
+Matrix relative_columns(const Matrix &columns, double &largest) {
+  constexpr double small = 1e-2;
+  const Eigen::RowVectorXd norms = columns.colwise().norm();
+  largest = std::max(largest, norms.maxCoeff());
+  return columns * norms.cwiseMax(small * largest).cwiseInverse().asDiagonal();
+}
+
+} // namespace
+
+bool factorises_for_displacements(const Problem &problem, const ReducedModel &model) {
+  constexpr Index cheap = 100; // functions: their factor takes less than the law
+  const NodalLaw &law = *model.contact.law;
+  return model.primal_size() > cheap && law.condensed.terms.size() > 0 &&
+         law.basis.normal.size() == 0 && law.states.size() == 0 && model.body.a.size() > 2 &&
+         problem.free_bodies().empty();
+}
+
+Matrix answered_displacements(const Problem &problem, const ReducedModel &model) {
+  const Index n = model.primal_size();
+  const ReducedBody body(model, problem.scene());
+  BodyAtMu at_mu(body);
+  const bool loaded = at_mu.has_load();
+  constexpr double dependent = 0.5; // none is: they are orthonormal and beside the space
+  OrthonormalColumns space;
+  space.append(Matrix::Identity(n, model.body.modes), dependent);
+  const auto displacements = [&](const ReducedAnswer &answer) {
+    if (!loaded) return answer.u;
+    at_mu.set(answer.mu);
+    Vector both(2 * n);
+    both << answer.u, at_mu.response(at_mu.load());
+    return both;
+  };
+  constexpr int most_times = 20; // of a hundred answers
+  int times = 0;
+  double largest = 0, largest_load = 0;
+  take_answers(problem, model, loaded ? 2 * n : n, displacements, [&](const Matrix &answers) {
+    Matrix parts = relative_columns(answers.topRows(n), largest);
+    if (loaded) {
+      parts.conservativeResize(Eigen::NoChange, 2 * answers.cols());
+      parts.rightCols(answers.cols()) = displacement_tolerance / load_tolerance *
+                                        relative_columns(answers.bottomRows(n), largest_load);
+    }
+    const Matrix rest = space.remainder(parts);
+    if (rest.colwise().norm().maxCoeff() <= displacement_tolerance) return false;
+    space.append(leading_vectors(rest, not_taken * displacement_tolerance), dependent);
+    return 4 * space.columns().cols() < 3 * n && ++times <= most_times;
+  });
+  return 4 * space.columns().cols() < 3 * n && times <= most_times ? space.columns() : Matrix();
 }
 
 } // namespace rbvi

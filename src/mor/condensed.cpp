@@ -27,8 +27,6 @@ namespace {
 /// they have to, and 1e-6 of them is wanted: 2.9e-7 measured on the disk with two stiffnesses.
 constexpr double response_tolerance = 5e-7;
 constexpr int most_responses = 200; ///< factorisations
-/// Of the responses to the loads: the gap that they leave is what the multipliers answer to.
-constexpr double load_tolerance = 1e-9;
 
 /// The parameters of a that are free, each with so many points.
 std::vector<ChebyshevAxis> axes_of(const Scene &scene, int points) {

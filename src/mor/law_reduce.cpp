@@ -103,12 +103,21 @@ void add_starts(ReducedModel &model, const Problem &problem) {
 void compress_responses(Problem &problem, const std::vector<Sample> &samples,
                         const AffineOperators &affine, ReducedBases &bases, ReducedModel &model,
                         StageTable &stages) {
-  timed(stages, stage::condensation, [&] {
-    bases.responses += append_answered_responses(problem, *bases.awaiting, model,
-                                                 answered_tolerance, bases.pod.basis);
-    ++bases.factorisations;
-  });
-  bases.awaiting.reset();
+  if (!bases.awaiting && !factorises_for_displacements(problem, model)) return;
+  {
+    const Stage stage(stages, stage::condensation);
+    if (bases.awaiting) {
+      bases.responses += append_answered_responses(problem, *bases.awaiting, model,
+                                                   answered_tolerance, bases.pod.basis);
+      ++bases.factorisations;
+      bases.awaiting.reset();
+    } else {
+      const Matrix kept = answered_displacements(problem, model);
+      if (kept.size() == 0) return;
+      rotate(bases.pod.basis, kept);
+      bases.responses = static_cast<int>(kept.cols()) - bases.modes;
+    }
+  }
   const Stage stage(stages, stage::projection);
   Matrix starts = std::move(model.contact.law->starts);
   model = project(problem, samples, affine, bases);

@@ -162,12 +162,17 @@ Pod pod(const std::vector<Vec> &snapshots, Mat product, const PodOptions &option
   result.singular_values.assign(svd.values.begin(), svd.values.end());
   result.error = projection_errors(svd.values);
   const auto kept = static_cast<PetscInt>(truncation(svd.values, result.error, options));
-  const Handle<Mat> rotation = sequential_dense(svd.left);
   RBVI_CALL(BVSetActiveColumns(columns, 0, rank));
-  RBVI_CALL(BVMultInPlace(columns, rotation.get(), 0, kept));
+  rotate(result.basis, svd.left.leftCols(kept));
+  return result;
+}
+
+void rotate(LinearBasis &basis, const Matrix &rotation) {
+  const BV columns = basis.columns.get();
+  const auto kept = static_cast<PetscInt>(rotation.cols());
+  RBVI_CALL(BVMultInPlace(columns, sequential_dense(rotation).get(), 0, kept));
   RBVI_CALL(BVResize(columns, kept, PETSC_TRUE));
   RBVI_CALL(BVSetActiveColumns(columns, 0, kept));
-  return result;
 }
 
 namespace {

@@ -344,8 +344,7 @@ void make_law(Problem &problem, const std::vector<Sample> &samples, const Reduce
     result.model = project(problem, samples, result.affine, result.bases);
     if (result.bases.condensed.terms.size() > 0) add_starts(result.model, problem);
   }
-  if (result.bases.awaiting)
-    compress_responses(problem, samples, result.affine, result.bases, result.model, result.stages);
+  compress_responses(problem, samples, result.affine, result.bases, result.model, result.stages);
   if (will_run(result.stages, stage::collocation))
     add_collocation(problem, samples, options.gcns, result);
 }

@@ -11,6 +11,9 @@
 
 namespace rbvi {
 
+/// Of the responses to the loads: the gap that they leave is what the multipliers answer to.
+inline constexpr double load_tolerance = 1e-9;
+
 struct CondensedOptions {
   double tolerance = 1e-9; ///< of the interpolation, relative
   int max_points = 33;     ///< along one parameter

@@ -38,6 +38,9 @@ std::vector<double> projection_errors(const Vector &values);
 /// singular value.
 Pod pod(const std::vector<Vec> &snapshots, Mat product, const PodOptions &options);
 
+/// Collective. The basis times orthonormal columns, as many rows as it has functions.
+void rotate(LinearBasis &basis, const Matrix &rotation);
+
 /// Collective. Appends `columns` (dense, distributed like the basis) after V-orthonormalisation
 /// against it; a column with a remainder below `tolerance` of its norm is left out. Returns
 /// the positions of the columns taken.

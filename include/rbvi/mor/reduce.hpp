@@ -116,8 +116,9 @@ Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sa
 /// The law at nodes, with the condensed operator: the training multipliers that
 /// `project` has left in the model become what a query starts from. Serial.
 void add_starts(ReducedModel &model, const Problem &problem);
-/// Lets the responses that bases.awaiting waits for join the modes, by the answers of `model`,
-/// which is projected again. Collective.
+/// By the answers of `model`: lets the responses that bases.awaiting waits for join the modes, or
+/// leaves of those that did what displacements need, where these cost more than the law; then the
+/// model is projected again. Collective.
 void compress_responses(Problem &problem, const std::vector<Sample> &samples,
                         const AffineOperators &affine, ReducedBases &bases, ReducedModel &model,
                         StageTable &stages);
