@@ -74,12 +74,12 @@ std::string csv(const std::vector<BenchRow> &rows, double best) {
   return table;
 }
 
-Sweep samples_at(Problem &problem, const ToolOptions &options, const std::vector<Mu> &set,
+Sweep samples_at(Problem &problem, const OfflineOptions &options, const std::vector<Mu> &set,
                  const std::string &name) {
   const Groups alone(PETSC_COMM_SELF, 1);
   Sweep sweep =
       run_sweep(PETSC_COMM_SELF, alone, problem, options.hf, set, {options.out / "samples"});
-  check_failures(options, sweep.report, set.size(), name);
+  check_failures(options.scene.parameters, options.max_failures, sweep.report, set.size(), name);
   return sweep;
 }
 
@@ -99,7 +99,7 @@ bool vi_fits(const Scene &scene) {
   return scene.options.contains("lumped") && separable_contact(scene) && !has_friction(scene);
 }
 
-std::vector<BenchRow> bench_baselines(Problem &problem, const ToolOptions &options,
+std::vector<BenchRow> bench_baselines(Problem &problem, const Setup &options,
                                       const std::vector<Sample> &truths) {
   constexpr std::size_t few_slow = 3, few = 8;
   std::vector<BenchRow> rows;
@@ -133,10 +133,10 @@ std::vector<BenchRow> bench_baselines(Problem &problem, const ToolOptions &optio
   return rows;
 }
 
-void bench(const ToolOptions &options, const ReducedModel &model, int ranks) {
+void bench(const MeasureOptions &options, const ReducedModel &model, int ranks) {
   Problem problem(PETSC_COMM_SELF, options.scene, options.mesh);
   check_scene(problem);
-  check_problem(problem, model, options);
+  check_problem(problem, model, options.out);
   const std::vector<Sample> snapshots =
       samples_at(problem, options, from_columns(model.made.trained_mu), "training").samples;
   const std::vector<Mu> validation = validation_set(options, model);
@@ -168,18 +168,18 @@ void bench(const ToolOptions &options, const ReducedModel &model, int ranks) {
   std::printf("%s\n", table.c_str());
   print_written(std::cout,
                 {options.out / "bench" / "table.md", options.out / "bench" / "table.csv"});
-  report_failures(options, sweep.report, validation.size(), "validation",
+  report_failures(options.scene.parameters, sweep.report, validation.size(), "validation",
                   "measured over the others");
 }
 
 } // namespace
 
-void command_bench(const ToolOptions &given) {
+void command_bench(const MeasureOptions &given) {
   if (!given.growth.empty()) return command_growth(given);
   const MPI_Comm world = PETSC_COMM_WORLD;
   const int rank = rank_of(world), ranks = ranks_of(world);
   const ReducedModel model = model_of_run(world, given);
-  const ToolOptions options = adopt_model(given, model);
+  const MeasureOptions options = adopt_model(given, model);
   check_eigen_options(options, EigenUse::none);
   collectively(world, [&] {
     if (rank == 0) bench(options, model, ranks);

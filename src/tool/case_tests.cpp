@@ -46,13 +46,13 @@ bool compare(const SceneTest &test, const std::string &output, double expected,
 
 } // namespace
 
-void run_tests(const ToolOptions &options) {
+void run_tests(const Setup &setup) {
   const MPI_Comm world = PETSC_COMM_WORLD;
-  Problem problem(world, with_all_free(options.scene), options.mesh, options.contact_gather);
-  HighFidelity solver(problem, options.hf);
+  Problem problem(world, with_all_free(setup.scene), setup.mesh, setup.contact_gather);
+  HighFidelity solver(problem, setup.hf);
   std::vector<std::string> failed;
   if (rank_of(world) == 0) std::printf("tests:\n");
-  for (const SceneTest &test : options.scene.tests) {
+  for (const SceneTest &test : setup.scene.tests) {
     const Mu mu = place_of(test, problem.scene().parameters);
     const HfSolution solution =
         while_doing("solving at the test '" + test.name + "'", [&] { return solver.solve(mu); });
@@ -64,7 +64,7 @@ void run_tests(const ToolOptions &options) {
   collectively(world, [&] {
     if (!failed.empty())
       throw failure(std::to_string(failed.size()) + " of " +
-                    counted(std::ssize(options.scene.tests), "test") +
+                    counted(std::ssize(setup.scene.tests), "test") +
                     " of the case failed: " + joined(failed));
   });
 }

@@ -188,7 +188,7 @@ std::string case_of_mesh(const std::string &mesh, const fs::path &folder) {
 }
 
 /// Every variant of the case can be read.
-void check_variants(const ToolOptions &options) {
+void check_variants(const MeasureOptions &options) {
   const SceneEntry &entry = entry_of(*options.registry, options.scene.name);
   const std::string file =
       (fs::is_directory(options.case_name) ? options.case_name / "case.yaml" : options.case_name)
@@ -203,15 +203,15 @@ void check_variants(const ToolOptions &options) {
 
 } // namespace
 
-void command_check(const ToolOptions &options) {
+void command_check(const MeasureOptions &options, const SolveOptions &solve) {
   const MPI_Comm world = PETSC_COMM_WORLD;
-  if (options.run_tests && options.scene.tests.empty())
+  if (solve.run_tests && options.scene.tests.empty())
     throw bad_input("this case has no 'tests:' that -run could prove (cases/README.md)");
   collectively(world, [&] { check_variants(options); });
-  std::vector<NamedFile> outputs = files_of_solution(options);
-  for (NamedFile &file : files_of_check(options))
+  std::vector<NamedFile> outputs = files_of_solution(solve.vtu, options.scene);
+  for (NamedFile &file : files_of_check(solve.vtu, options.scene))
     outputs.push_back(std::move(file));
-  check_outputs(world, options, outputs);
+  check_outputs(world, options, options.mesh.file, outputs);
   Problem problem(world, options.scene, options.mesh, options.contact_gather);
   check_scene(problem);
   SerialMesh mesh; // on the first rank
@@ -230,10 +230,10 @@ void command_check(const ToolOptions &options) {
   const std::string at = short_text(problem.scene().parameters, mu);
   HighFidelity solver(problem, options.hf);
   const HfSolution solution = while_doing("solving " + at, [&] { return solver.solve(mu); });
-  write_solution(problem, options, mu, solution);
+  write_solution(problem, solve.vtu, mu, solution);
   collectively(world, [&] {
     if (rank_of(world) != 0) return;
-    if (!options.vtu.empty()) print_written(std::cout, write_check(options, problem, mesh));
+    if (!solve.vtu.empty()) print_written(std::cout, write_check(solve.vtu, problem, mesh));
     std::printf("at the middle of the box, %s:\n", at.c_str());
     print_outputs(std::cout, solution.outputs);
     if (solution.outputs.contact_nodes && *solution.outputs.contact_nodes == 0)
@@ -244,7 +244,7 @@ void command_check(const ToolOptions &options) {
     print_unheld(problem.scene().parameters, unheld);
     std::printf("no defect was found\n");
   }
-  if (options.run_tests) run_tests(options);
+  if (solve.run_tests) run_tests(options);
 }
 
 void command_new(const std::string &name, const std::string &mesh) {

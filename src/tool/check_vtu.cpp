@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::array places_in_box{"middle", "least", "largest"};
 
-std::filesystem::path partners_file(const ToolOptions &options, std::size_t contact,
+std::filesystem::path partners_file(const std::string &vtu, const Scene &scene, std::size_t contact,
                                     const std::string &place) {
-  return file_beside(contact_files(options.vtu, options.scene, "_partners")[contact], "_" + place);
+  return file_beside(contact_files(vtu, scene, "_partners")[contact], "_" + place);
 }
 
 Vector as_numbers(const std::vector<bool> &flags) {
@@ -108,35 +108,36 @@ std::vector<Grid> partners_in_box(const Scene &scene, ContactInterface &interfac
 
 } // namespace
 
-std::vector<NamedFile> files_of_check(const ToolOptions &options) {
-  if (options.vtu.empty()) return {};
-  std::vector<NamedFile> files{{"-vtu", file_beside(options.vtu, "_mesh")},
-                               {"-vtu", file_beside(options.vtu, "_surface")}};
-  for (std::size_t i = 0; i < options.scene.contacts.size(); ++i)
+std::vector<NamedFile> files_of_check(const std::string &vtu, const Scene &scene) {
+  if (vtu.empty()) return {};
+  std::vector<NamedFile> files{{"-vtu", file_beside(vtu, "_mesh")},
+                               {"-vtu", file_beside(vtu, "_surface")}};
+  for (std::size_t i = 0; i < scene.contacts.size(); ++i)
     for (const char *place : places_in_box)
-      files.push_back({"-vtu", partners_file(options, i, place)});
+      files.push_back({"-vtu", partners_file(vtu, scene, i, place)});
   return files;
 }
 
-std::vector<std::filesystem::path> write_check(const ToolOptions &options, const Problem &problem,
+std::vector<std::filesystem::path> write_check(const std::string &vtu, const Problem &problem,
                                                const SerialMesh &mesh) {
+  const Scene &scene = problem.scene();
   std::vector<std::filesystem::path> written;
   const auto write = [&](const std::filesystem::path &file, Grid grid) {
     if (grid.cells.empty()) {
       std::filesystem::remove(file); // of an earlier check
       return;
     }
-    grid.scene = options.scene.name;
+    grid.scene = scene.name;
     write_vtu(file, grid, vtu_format(grid));
     written.push_back(file);
   };
-  write(file_beside(options.vtu, "_mesh"), grid_of(mesh));
-  write(file_beside(options.vtu, "_surface"), grid_of(mesh, surface_of(mesh, options.scene)));
+  write(file_beside(vtu, "_mesh"), grid_of(mesh));
+  write(file_beside(vtu, "_surface"), grid_of(mesh, surface_of(mesh, scene)));
   for (std::size_t i = 0; i < problem.contact().interfaces.size(); ++i) {
     std::vector<Grid> grids = partners_in_box(problem.scene(), *problem.contact().interfaces[i]);
     for (std::size_t k = 0; k < grids.size(); ++k) {
       grids[k].contacts = {problem.contact().names[i]};
-      write(partners_file(options, i, places_in_box[k]), grids[k]);
+      write(partners_file(vtu, scene, i, places_in_box[k]), grids[k]);
     }
   }
   return written;

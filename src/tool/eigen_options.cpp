@@ -26,7 +26,7 @@ bool is_ineffective(const std::string &name) {
 }
 
 /// Why a run makes no supremizers; "" where it does.
-std::string without_supremizers(const ToolOptions &options) {
+std::string without_supremizers(const OfflineOptions &options) {
   if (!is_of(use::multipliers, options))
     return "Nitsche's method has no multipliers to make supremizers for";
   if (options.reduce.enrichment == Enrichment::decorrelated)
@@ -37,17 +37,19 @@ std::string without_supremizers(const ToolOptions &options) {
 }
 
 /// Why a run computes no inf-sup constants; "" where it does.
-std::string without_constants(const ToolOptions &options) {
+std::string without_constants(const OfflineOptions &options) {
   if (!is_of(use::dual_basis, options))
     return "inf-sup constants are of a reduced pair: -multiplier_reduction cone or collocated";
-  return options.stability ? "" : "-verify_stability no computes no inf-sup constants";
+  return "";
 }
 
-std::string why_not(const std::string &name, const ToolOptions &options, EigenUse use) {
+std::string why_not(const std::string &name, const OfflineOptions &options, EigenUse use) {
   const bool of_greedy = name.starts_with("pga_");
   if (of_greedy && use != EigenUse::supremizers) return "supremizers are made by offline";
   const bool of_tolerance = use == EigenUse::supremizers && options.reduce.infsup_tolerance &&
                             options.reduce.enrichment == Enrichment::offline;
+  if (!of_greedy && use == EigenUse::no_constants)
+    return "-verify_stability no computes no inf-sup constants";
   if (!of_greedy && !of_tolerance && use != EigenUse::constants)
     return "inf-sup constants are computed by verify and, with -pga_tolerance infsup, by offline";
   return of_greedy || of_tolerance ? without_supremizers(options) : without_constants(options);
@@ -60,7 +62,7 @@ const std::vector<std::string> &eigen_prefixes() {
   return prefixes;
 }
 
-void check_eigen_options(const ToolOptions &options, EigenUse use) {
+void check_eigen_options(const OfflineOptions &options, EigenUse use) {
   std::set<std::string> asked; // prefixes
   for (const std::string &name : unread_names(eigen_prefixes())) {
     if (is_ineffective(name))

@@ -18,28 +18,27 @@ std::string count_of(const SweepReport &report, std::size_t total, const std::st
 
 } // namespace
 
-void check_failures(const ToolOptions &options, const SweepReport &report, std::size_t total,
-                    const std::string &set) {
+void check_failures(const ParameterSpace &space, double most, const SweepReport &report,
+                    std::size_t total, const std::string &set) {
   if (rank_of(PETSC_COMM_WORLD) == 0)
     for (const auto &[mu, reason] : report.failed)
-      std::printf("  failed at %s: %s\n", describe(options.scene.parameters, mu).c_str(),
-                  reason.c_str());
+      std::printf("  failed at %s: %s\n", describe(space, mu).c_str(), reason.c_str());
   const auto failed = static_cast<double>(report.failed.size());
   if (!report.failed.empty() && report.failed.size() == total)
     throw failure("no sample succeeded, the first because " + report.failed.front().second);
-  if (failed > options.max_failures * static_cast<double>(total) + 1e-9)
+  if (failed > most * static_cast<double>(total) + 1e-9)
     throw failure(count_of(report, total, set) + ", more than -sweep_max_failures " +
-                  short_number(options.max_failures) +
+                  short_number(most) +
                   " allows: nothing is made of the others; see the reasons above, and change the "
                   "box or the options of the solver");
 }
 
-void report_failures(const ToolOptions &options, const SweepReport &report, std::size_t total,
+void report_failures(const ParameterSpace &space, const SweepReport &report, std::size_t total,
                      const std::string &set, const std::string &consequence) {
   if (report.failed.empty()) return;
   const Mu &mu = report.failed.front().first;
-  throw failure(count_of(report, total, set) + " (the first at " +
-                describe(options.scene.parameters, mu) + "): " + consequence);
+  throw failure(count_of(report, total, set) + " (the first at " + describe(space, mu) +
+                "): " + consequence);
 }
 
 } // namespace rbvi

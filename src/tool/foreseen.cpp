@@ -57,14 +57,14 @@ int axes_of(const Scene &scene) {
       std::ranges::count_if(scene.parameters.free, [&](int i) { return depends_on(scene.a, i); }));
 }
 
-bool condenses(const ToolOptions &options) {
+bool condenses(const OfflineOptions &options) {
   return has_multipliers(options.scene) &&
          reduction_of(options.scene, options.reduce.multipliers.reduction) ==
              MultiplierReduction::condensed;
 }
 
 /// Functions that join the modes: responses, or supremizers of as many generators.
-double joining(const ToolOptions &options, const RunSizes &size, double samples) {
+double joining(const OfflineOptions &options, const RunSizes &size, double samples) {
   const Scene &scene = options.scene;
   const ReduceOptions &reduce = options.reduce;
   if (!has_multipliers(scene)) return 0;
@@ -118,12 +118,12 @@ std::pair<std::string, double> largest_stage(const Foresight &foreseen,
 
 } // namespace
 
-RunSizes sizes_by_count(MPI_Comm world, const Groups &groups, const ToolOptions &options) {
+RunSizes sizes_by_count(MPI_Comm world, const Groups &groups, const Setup &setup) {
   RunSizes size;
   size.ranks = ranks_of(world);
   size.group = ranks_of(groups.comm());
-  size.dofs = static_cast<double>(count_nodes(world, options.scene, options.mesh)) *
-              options.scene.components;
+  size.dofs =
+      static_cast<double>(count_nodes(world, setup.scene, setup.mesh)) * setup.scene.components;
   size.before = largest(world, resident_bytes());
   size.held = size.before + mesh_bytes * size.dofs;
   return size;
@@ -142,7 +142,7 @@ RunSizes sizes_of(MPI_Comm world, const Problem &problem, const HfOptions &optio
   return size;
 }
 
-Foresight foresee(const ToolOptions &options, const std::vector<Mu> &training,
+Foresight foresee(const OfflineOptions &options, const std::vector<Mu> &training,
                   const RunSizes &size) {
   const Scene &scene = options.scene;
   const ParameterSpace &space = scene.parameters;

@@ -32,8 +32,8 @@ std::string with_option(const std::string &case_file, const std::string &name,
 }
 
 /// The options of one run, in a directory of its own.
-ToolOptions options_of_run(const ToolOptions &options, int refine, int ranks_per_solve) {
-  ToolOptions of_run = options;
+OfflineOptions options_of_run(const OfflineOptions &options, int refine, int ranks_per_solve) {
+  OfflineOptions of_run = options;
   const std::string level = std::to_string(refine), ranks = std::to_string(ranks_per_solve);
   of_run.mesh.refine = refine;
   of_run.ranks_per_solve = ranks_per_solve;
@@ -75,7 +75,7 @@ void describe_samples(const std::vector<Sample> &samples, GrowthRun &run) {
 }
 
 /// Runs the pipeline and takes its directory away again. Collective.
-GrowthRun measure(MPI_Comm world, const ToolOptions &options, const std::vector<Mu> &training) {
+GrowthRun measure(MPI_Comm world, const OfflineOptions &options, const std::vector<Mu> &training) {
   GrowthRun run;
   run.scene = options.scene.name;
   run.refine = options.mesh.refine;
@@ -105,7 +105,7 @@ GrowthRun measure(MPI_Comm world, const ToolOptions &options, const std::vector<
 }
 
 /// Every number that divides the ranks, or the one that the options ask for.
-std::vector<int> groupings(const ToolOptions &options, int ranks) {
+std::vector<int> groupings(const OfflineOptions &options, int ranks) {
   if (options.ranks_per_solve != 0) return {options.ranks_per_solve};
   std::vector<int> divisors;
   for (int number = 1; number <= ranks; ++number)
@@ -123,13 +123,13 @@ void tell(const GrowthRun &run) {
 
 } // namespace
 
-void command_growth(const ToolOptions &options) {
+void command_growth(const MeasureOptions &options) {
   const MPI_Comm world = PETSC_COMM_WORLD;
   const std::vector<Mu> training = checked_training(options);
   if (options.out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
   const fs::path table = options.out / "bench" / "growth.csv";
   const fs::path page = options.out / "bench" / "growth.md";
-  check_outputs(world, options, {{"the table", table}, {"the page", page}});
+  check_outputs(world, options, options.mesh.file, {{"the table", table}, {"the page", page}});
   const std::vector<int> per_solve = groupings(options, ranks_of(world));
   for (const int number : per_solve)
     (void)Groups(world, number); // throws before anything is written

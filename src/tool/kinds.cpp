@@ -130,6 +130,11 @@ std::vector<std::pair<Parameter, std::string>> parameters_of(const SceneEntry &e
   return all;
 }
 
+Option never_waits(Option option) {
+  option.waits = false;
+  return option;
+}
+
 Option only(const Use &use, Option option) {
   option.use = &use;
   return option;

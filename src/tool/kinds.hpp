@@ -7,12 +7,6 @@
 
 #include <type_traits>
 
-/// The place of a value among the options.
-#define RBVI_AT(member)                                                                            \
-  [](auto &options) -> auto & {                                                                    \
-    return options.member;                                                                         \
-  }
-
 namespace rbvi {
 
 /// Largest relative error that a reduced model may be asked for: above, it says nothing.
@@ -54,20 +48,19 @@ template <class Value> std::string as_text(const Value &value, std::string (*wri
     return std::filesystem::path(value).string();
 }
 
-/// A description with the default that the place has. `place`: from options (maybe const) to the
-/// place of the value in them.
-template <class Place> Option placed(Option option, Place place) {
-  option.shown = [place](const ToolOptions &options) {
-    return as_text(place(options), short_number);
-  };
-  const ToolOptions defaults;
-  option.default_value = as_text(place(defaults), plain);
+/// A description with the default that the place has.
+template <class Value> Option placed(Option option, Value &place) {
+  option.shown = [&place] { return as_text(place, short_number); };
+  option.default_value = as_text(place, plain);
   return option;
 }
 
 /// For these runs alone; of several options those that are not for others.
 Option only(const Use &use, Option option);
 std::vector<Option> only(const Use &use, std::vector<Option> options);
+
+/// A reduction would take it, or tell of it, and not follow: refused wherever it has no effect.
+Option never_waits(Option option);
 
 /// Models of the runs that it is for, or of `runs`, keep the value, as the setting `as`: by default
 /// of the same name.
@@ -80,62 +73,56 @@ Option otherwise(const std::string &value, Option option);
 /// Options behind those of `all`, below a heading.
 void add(const char *group, std::vector<Option> options, std::vector<Option> &all);
 
-template <class Place>
-Option number(const std::string &name, const Range &range, Place place, const std::string &help) {
-  using Value = std::remove_reference_t<decltype(place(std::declval<ToolOptions &>()))>;
+// Options by the kind of their values; each place outlives its option.
+
+template <class Value>
+Option number(const std::string &name, const Range &range, Value &place, const std::string &help) {
   constexpr bool whole = std::is_integral_v<Value>;
   Option option{name, whole ? OptionKind::integer : OptionKind::number, help};
   option.values = (whole ? "integer, " : "") + in_words(range);
-  option.read = [=](const std::string &value, ToolOptions &options) {
+  option.read = [=, &place](const std::string &value) {
     if constexpr (whole)
-      place(options) = integer_of(name, value, range);
+      place = integer_of(name, value, range);
     else
-      place(options) = number_of(name, value, range);
+      place = number_of(name, value, range);
   };
   return placed(std::move(option), place);
 }
 
 /// Integers, each larger than the one before it; none where it is not given.
-template <class Place>
-Option rising(const std::string &name, const Range &range, Place place, const std::string &help) {
+inline Option rising(const std::string &name, const Range &range, std::vector<int> &place,
+                     const std::string &help) {
   Option option{name, OptionKind::text, help, "rising integers 0,1,...: each " + in_words(range)};
-  option.read = [=](const std::string &value, ToolOptions &options) {
-    place(options) = rising_of(name, value, range);
-  };
+  option.read = [=, &place](const std::string &value) { place = rising_of(name, value, range); };
   return option;
 }
 
-template <class Place> Option flag(const std::string &name, Place place, const std::string &help) {
+inline Option flag(const std::string &name, bool &place, const std::string &help) {
   Option option{name, OptionKind::flag, help, "yes, no"};
-  option.read = [=](const std::string &value, ToolOptions &options) {
-    place(options) = flag_of(name, value);
-  };
+  option.read = [=, &place](const std::string &value) { place = flag_of(name, value); };
   return placed(std::move(option), place);
 }
 
 /// The place holds an enumeration, or yes for the second of two choices.
-template <class Place>
-Option choice(const std::string &name, const std::vector<Choice> &all, Place place,
+template <class Value>
+Option choice(const std::string &name, const std::vector<Choice> &all, Value &place,
               const std::string &help) {
-  using Value = std::remove_reference_t<decltype(place(std::declval<ToolOptions &>()))>;
   Option option{name, OptionKind::choice, help};
   option.choices = all;
-  option.read = [=](const std::string &value, ToolOptions &options) {
-    place(options) = static_cast<Value>(choice_of(name, value, all));
+  option.read = [=, &place](const std::string &value) {
+    place = static_cast<Value>(choice_of(name, value, all));
   };
-  option.shown = [=](const ToolOptions &options) {
-    return all[static_cast<std::size_t>(place(options))].name;
-  };
-  option.default_value = option.shown({});
+  option.shown = [=, &place] { return all[static_cast<std::size_t>(place)].name; };
+  option.default_value = option.shown();
   return option;
 }
 
 /// Text, the name of a file or a set: whoever uses it reads it.
-template <class Place>
-Option text(const std::string &name, OptionKind kind, const std::string &values, Place place,
+template <class Value>
+Option text(const std::string &name, OptionKind kind, const std::string &values, Value &place,
             const std::string &help) {
   Option option{name, kind, help, values};
-  option.read = [=](const std::string &value, ToolOptions &options) { place(options) = value; };
+  option.read = [&place](const std::string &value) { place = value; };
   return placed(std::move(option), place);
 }
 

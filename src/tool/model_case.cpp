@@ -41,7 +41,7 @@ std::string setting(const ReducedModel &model, const std::string &name) {
 }
 
 /// Whether the case trains at other parameters. A set that cannot be read is not needed.
-bool other_training(const ToolOptions &options, const ReducedModel &model) {
+bool other_training(const OfflineOptions &options, const ReducedModel &model) {
   if (options.train == setting(model, "training")) return false;
   std::vector<Mu> own = from_columns(model.made.trained_mu);
   for (Mu &mu : from_columns(model.made.failed_mu))
@@ -66,7 +66,7 @@ MeshOptions mesh_of(const ReducedModel &model, MeshOptions mesh) {
 }
 
 /// "name VALUE instead of VALUE" for each difference.
-std::vector<std::string> differences(const ToolOptions &given, const ToolOptions &own,
+std::vector<std::string> differences(const OfflineOptions &given, const OfflineOptions &own,
                                      const ReducedModel &model) {
   std::vector<std::string> list;
   const auto differ = [&](const std::string &name, const std::string &mine,
@@ -93,7 +93,7 @@ std::vector<std::string> differences(const ToolOptions &given, const ToolOptions
 
 } // namespace
 
-ReducedModel model_of_run(MPI_Comm world, const ToolOptions &options) {
+ReducedModel model_of_run(MPI_Comm world, const OfflineOptions &options) {
   if (options.out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
   const fs::path file = options.out / "model.h5";
   ReducedModel model;
@@ -110,8 +110,8 @@ ReducedModel model_of_run(MPI_Comm world, const ToolOptions &options) {
   return model;
 }
 
-ToolOptions adopt_model(ToolOptions options, const ReducedModel &model) {
-  const ToolOptions given = options;
+MeasureOptions adopt_model(MeasureOptions options, const ReducedModel &model) {
+  const OfflineOptions given = options;
   if (model.scene.name != options.scene.name)
     throw bad_input("the model in " + options.out.string() + " is one of scene " +
                     model.scene.name + ", the case names " + options.scene.name +
@@ -126,21 +126,22 @@ ToolOptions adopt_model(ToolOptions options, const ReducedModel &model) {
   return options;
 }
 
-std::vector<Mu> validation_set(const ToolOptions &options, const ReducedModel &model) {
+std::vector<Mu> validation_set(const MeasureOptions &options, const ReducedModel &model) {
   std::vector<Mu> set = parse_set(options.scene.parameters, options.valid);
   check_set(options.scene, set);
   const std::vector<Mu> list = from_columns(model.made.trained_mu);
   const std::set<Mu> trained(list.begin(), list.end());
   const auto seen = std::ranges::count_if(set, [&](const Mu &mu) { return trained.contains(mu); });
   if (seen > 0 && rank_of(PETSC_COMM_WORLD) == 0)
-    std::printf("warning: at %td of %zu validation parameters the model was trained, and its errors "
-                "there say nothing of others: give another -valid (of a random set another seed)\n",
-                seen, set.size());
+    std::printf(
+        "warning: at %td of %zu validation parameters the model was trained, and its errors "
+        "there say nothing of others: give another -valid (of a random set another seed)\n",
+        seen, set.size());
   return set;
 }
 
-void check_problem(const Problem &problem, const ReducedModel &model, const ToolOptions &options) {
-  const std::string its = "the model in " + options.out.string();
+void check_problem(const Problem &problem, const ReducedModel &model, const fs::path &out) {
+  const std::string its = "the model in " + out.string();
   const std::string file = setting(model, "mesh_file");
   if (problem.mesh().fingerprint != model.made.mesh_fingerprint)
     throw bad_input(its + " was made on another mesh" +

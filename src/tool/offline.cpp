@@ -27,7 +27,7 @@ namespace rbvi {
 namespace {
 
 /// The stages, by whom samples are solved, how the linear systems of contact, and the memory.
-void print_plan(const Grouping &grouping, const ToolOptions &options, const OfflinePlan &plan) {
+void print_plan(const Grouping &grouping, const OfflineOptions &options, const OfflinePlan &plan) {
   print_stages(plan.stages, plan.foreseen);
   std::printf("%s\n", grouping.text.c_str());
   if (options.hf.method == HfMethod::active_set && has_multipliers(options.scene))
@@ -71,7 +71,7 @@ void tell_of_errors(const ReducedModel &model, const std::filesystem::path &run)
 
 } // namespace
 
-std::vector<Mu> checked_training(const ToolOptions &options) {
+std::vector<Mu> checked_training(const OfflineOptions &options) {
   std::vector<Mu> training = parse_set(options.scene.parameters, options.train);
   check_set(options.scene, training);
   check_reduction(options.scene, options.reduce);
@@ -79,7 +79,7 @@ std::vector<Mu> checked_training(const ToolOptions &options) {
   return training;
 }
 
-OfflinePlan plan_offline(MPI_Comm world, const Groups &groups, const ToolOptions &options,
+OfflinePlan plan_offline(MPI_Comm world, const Groups &groups, const OfflineOptions &options,
                          const std::vector<Mu> &training) {
   const std::vector<StageTable> stages{preparation_stages(options, training.size(), groups),
                                        reduction_stages(options.scene, options.reduce),
@@ -95,7 +95,7 @@ OfflinePlan plan_offline(MPI_Comm world, const Groups &groups, const ToolOptions
           room_for(world)};
 }
 
-OfflineRun run_offline(MPI_Comm world, const Groups &groups, const ToolOptions &options,
+OfflineRun run_offline(MPI_Comm world, const Groups &groups, const OfflineOptions &options,
                        const std::vector<Mu> &training, OfflinePlan plan) {
   check_memory(plan.foreseen, plan.stages, plan.room);
   StageTable before = std::move(plan.before), after = closing_stages();
@@ -107,7 +107,8 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const ToolOptions &
         {options.out / "samples", [&] { begin_run(world, options); }, Fields::in_files});
   });
   work.end_of_solves();
-  check_failures(options, sweep.report, training.size(), "training");
+  check_failures(options.scene.parameters, options.max_failures, sweep.report, training.size(),
+                 "training");
   if (will_run(before, stage::distributed_mesh))
     timed(before, stage::distributed_mesh, [&] { work.world_problem(); });
   before =
@@ -143,7 +144,7 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const ToolOptions &
           static_cast<int>(problem.dual_size())};
 }
 
-void command_offline(const ToolOptions &options) {
+void command_offline(const OfflineOptions &options) {
   const MPI_Comm world = PETSC_COMM_WORLD;
   const std::vector<Mu> training = checked_training(options);
   const Grouping grouping =
@@ -153,7 +154,7 @@ void command_offline(const ToolOptions &options) {
   if (!options.plan && options.out.empty())
     throw bad_input("no run directory is named: use -out run/NAME");
   if (!options.plan)
-    check_outputs(world, options,
+    check_outputs(world, options, options.mesh.file,
                   {{"the reduced model", options.out / "model.h5"},
                    {"its fields", fields_file(options.out / "model.h5")},
                    {"the table", options.out / "samples.csv"}});
@@ -175,7 +176,7 @@ void command_offline(const ToolOptions &options) {
                   {options.out / "model.h5", fields_file(options.out / "model.h5"),
                    options.out / "samples.csv", case_of_run(options.out), options.out / "samples"});
   }
-  report_failures(options, run.sweep.report, training.size(), "training",
+  report_failures(options.scene.parameters, run.sweep.report, training.size(), "training",
                   "the model is made from the others, and answers next to a failed one with a "
                   "warning");
 }

@@ -117,13 +117,12 @@ std::string as_option_file(const std::vector<std::string> &names, bool of_case) 
 }
 
 /// Every option that is given, into its place.
-void read_table(ToolOptions &options) {
-  for (const Option &option : tool_options()) {
+void read_table(const std::vector<Option> &table, RunFiles &files) {
+  for (const Option &option : table) {
     if (!option.read || !is_given(option.name)) continue;
     const std::string value = text_of(option.name);
-    option.read(value, options);
-    if (option.kind == OptionKind::set && is_set_file(value))
-      options.set_files[option.name] = value;
+    option.read(value);
+    if (option.kind == OptionKind::set && is_set_file(value)) files.set_files[option.name] = value;
   }
 }
 
@@ -160,19 +159,19 @@ std::string described(const std::vector<Foreign> &foreign, const Origin &case_fi
 }
 
 /// A geometry becomes its mesh, in the run directory or for the moment.
-void mesh_geometry(MPI_Comm comm, ToolOptions &options) {
-  if (!options.mesh.file.ends_with(".geo")) return;
-  const std::filesystem::path folder = options.out.empty()
-                                           ? std::filesystem::temp_directory_path() / "rbvi_meshes"
-                                           : options.out / "mesh";
-  const SceneEntry &entry = entry_of(*options.registry, options.scene.name);
-  options.mesh.file = meshed(comm, options.mesh.file, entry.mesh_numbers, folder);
+void mesh_geometry(MPI_Comm comm, const std::filesystem::path &out, Setup &setup) {
+  if (!setup.mesh.file.ends_with(".geo")) return;
+  const std::filesystem::path folder =
+      out.empty() ? std::filesystem::temp_directory_path() / "rbvi_meshes" : out / "mesh";
+  const SceneEntry &entry = entry_of(*setup.registry, setup.scene.name);
+  setup.mesh.file = meshed(comm, setup.mesh.file, entry.mesh_numbers, folder);
 }
 
 /// Everything but where it comes from. `names`: all options that are given.
 ToolOptions read_values(const std::vector<std::string> &names, const GivenCase &given,
                         const std::vector<std::string> &command_line) {
   ToolOptions options;
+  const std::vector<Option> table = options_of(options);
   options.registry = given.registry;
   options.command_line = command_line;
   options.scene = given_scene(entry_of(*given.registry, given.scene));
@@ -184,7 +183,7 @@ ToolOptions read_values(const std::vector<std::string> &names, const GivenCase &
   check_box_of_run(options.scene);
   options.train = options.scene.training;
   options.valid = options.scene.validation;
-  read_table(options);
+  read_table(table, options);
   MultiplierReduction &reduction = options.reduce.multipliers.reduction;
   reduction = reduction_of(options.scene, reduction);
   check_rules(options);
@@ -216,7 +215,7 @@ ToolOptions read_options(MPI_Comm comm, const std::string &command, const Regist
     for (const auto &[name, where] : origin)
       names.push_back(name);
     ToolOptions options = read_values(names, given, command_line);
-    mesh_geometry(comm, options);
+    mesh_geometry(comm, options.out, options);
     return options;
   } catch (const Error &error) {
     if (outside.empty()) throw;

@@ -6,6 +6,6 @@
 namespace rbvi {
 
 /// Bases, stability, separation, multipliers and Nitsche's method, in this order.
-std::vector<Option> reduction_options();
+std::vector<Option> reduction_options(OfflineOptions &options);
 
 } // namespace rbvi

@@ -12,7 +12,7 @@ namespace rbvi {
 namespace {
 
 /// Throws bad_input for a mesh file beside an option of the built-in mesh.
-void check_mesh_options(const ToolOptions &options) {
+void check_mesh_options(const OfflineOptions &options) {
   if (options.mesh.file.empty()) return;
   for (const SceneOption &option : entry_of(*options.registry, options.scene.name).options)
     if (option.built_in_mesh && is_given(option.name))
@@ -23,7 +23,7 @@ void check_mesh_options(const ToolOptions &options) {
 
 /// Throws bad_input for options of a dual basis and of its supremizers where the scene keeps every
 /// node by default. Who asks for that, maybe beside a case file with such options, means it.
-void check_dual_basis(const ToolOptions &options) {
+void check_dual_basis(const OfflineOptions &options) {
   if (is_given("multiplier_reduction") || unmet(use::dual_basis, options) != &use::dual_basis)
     return;
   for (const Option &option : tool_options())
@@ -35,7 +35,7 @@ void check_dual_basis(const ToolOptions &options) {
                       ", or leave it out");
 }
 
-void check_cone_level(const ToolOptions &options) {
+void check_cone_level(const OfflineOptions &options) {
   if (is_of(use::hats, options) && options.reduce.cone.level > options.mesh.refine)
     throw bad_input("-cone_level " + std::to_string(options.reduce.cone.level) +
                     " takes the hat functions of a mesh with so many refinements less, and "
@@ -54,17 +54,16 @@ const Use *use_of(const std::string &name) {
 }
 
 /// Throws bad_input for options on the command line that nothing of the run uses, and for a free
-/// parameter that is one. In a case file they may wait for another command line, but for those that
-/// a reduction would take or tell of and not follow.
-void check_effect(const ToolOptions &options) {
+/// parameter that is one. In a case file most wait for another command line (Option::waits).
+void check_effect(const OfflineOptions &options) {
   const auto check = [&](const std::string &name, const std::string &what) {
     const Use *use = use_of(name), *missed = use == nullptr ? nullptr : unmet(*use, options);
     if (missed != nullptr) throw bad_input(what + " has no effect: it is for " + missed->is_for);
   };
   for (const std::string &name : options.command_line)
     check(name, "-" + name);
-  for (const std::string name : {"cone_level", "eim_normal_tolerance", "eim_tangential_tolerance"})
-    if (is_given(name)) check(name, "-" + name);
+  for (const Option &option : tool_options())
+    if (!option.waits && is_given(option.name)) check(option.name, "-" + option.name);
   const ParameterSpace &space = options.scene.parameters;
   for (int i = 0; i < space.size(); ++i)
     check(space.at(i).name, "the free parameter " + space.at(i).name);
@@ -72,7 +71,7 @@ void check_effect(const ToolOptions &options) {
 
 } // namespace
 
-void check_rules(const ToolOptions &options) {
+void check_rules(const OfflineOptions &options) {
   const ReduceOptions &reduce = options.reduce;
   check_mesh_options(options);
   if (options.hf.method == HfMethod::vi) require_bounds_at_nodes(options.scene);

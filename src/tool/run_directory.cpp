@@ -55,21 +55,20 @@ std::string value_in_run(const std::string &name, const std::string &value) {
   return value;
 }
 
-void begin_run(MPI_Comm world, const ToolOptions &options) {
+void begin_run(MPI_Comm world, const RunFiles &files) {
   collectively(world, [&] {
     if (rank_of(world) != 0) return;
     std::map<std::string, std::string> sets; // all are read before anything is written
-    for (const auto &[name, file] : options.set_files)
+    for (const auto &[name, file] : files.set_files)
       sets[name] = read_set_file(name, file);
-    make_directory(options.out);
-    sweep_up(options.out);
+    make_directory(files.out);
+    sweep_up(files.out);
     for (const auto &[name, bytes] : sets) {
-      make_directory((options.out / copy_of(name)).parent_path());
-      write_atomically(options.out / copy_of(name), bytes);
+      make_directory((files.out / copy_of(name)).parent_path());
+      write_atomically(files.out / copy_of(name), bytes);
     }
-    if (!options.scene_text.empty())
-      write_atomically(options.out / scene_of_run, options.scene_text);
-    write_atomically(case_of_run(options.out), options.case_file);
+    if (!files.scene_text.empty()) write_atomically(files.out / scene_of_run, files.scene_text);
+    write_atomically(case_of_run(files.out), files.case_file);
   });
 }
 

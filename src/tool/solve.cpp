@@ -34,24 +34,24 @@ void check_inside(const ParameterSpace &space, const Mu &mu) {
 
 } // namespace
 
-std::vector<NamedFile> files_of_solution(const ToolOptions &options) {
-  std::vector<NamedFile> files{{"-vtu", options.vtu}};
-  if (options.vtu.empty()) return files;
-  for (const std::filesystem::path &file : contact_files(options.vtu, options.scene))
+std::vector<NamedFile> files_of_solution(const std::string &vtu, const Scene &scene) {
+  std::vector<NamedFile> files{{"-vtu", vtu}};
+  if (vtu.empty()) return files;
+  for (const std::filesystem::path &file : contact_files(vtu, scene))
     files.push_back({"-vtu", file});
   return files;
 }
 
-void command_solve(const ToolOptions &options) {
+void command_solve(const OfflineOptions &options, const SolveOptions &solve) {
   const MPI_Comm world = PETSC_COMM_WORLD;
   check_eigen_options(options, EigenUse::none);
-  if (options.mu.empty()) throw bad_input("no parameter is given: use -mu 0.18,0.02,-0.01");
+  if (solve.mu.empty()) throw bad_input("no parameter is given: use -mu 0.18,0.02,-0.01");
   const ParameterSpace &space = options.scene.parameters;
-  const Mu mu = parse_mu(space, options.mu, true);
+  const Mu mu = parse_mu(space, solve.mu, true);
   check_inside(space, mu);
-  std::vector<NamedFile> outputs = files_of_solution(options);
-  outputs.insert(outputs.begin(), {"-csv", options.csv});
-  check_outputs(world, options, outputs);
+  std::vector<NamedFile> outputs = files_of_solution(solve.vtu, options.scene);
+  outputs.insert(outputs.begin(), {"-csv", solve.csv});
+  check_outputs(world, options, options.mesh.file, outputs);
   Problem problem(world, options.scene, options.mesh, options.contact_gather);
   check_scene(problem);
   check_solver_options(problem, options.hf);
@@ -72,25 +72,25 @@ void command_solve(const ToolOptions &options) {
         locking_ratio(options.scene, expand(space, mu), material_points(problem.contact())),
         std::cout);
     std::printf("stopped: %s\n", solution.reason.c_str());
-    if (!options.csv.empty()) {
-      write_sample_table(options.csv, space, {{mu, {}, {}, solution.outputs}});
-      print_written(std::cout, {options.csv});
+    if (!solve.csv.empty()) {
+      write_sample_table(solve.csv, space, {{mu, {}, {}, solution.outputs}});
+      print_written(std::cout, {solve.csv});
     }
   });
-  write_solution(problem, options, mu, solution);
+  write_solution(problem, solve.vtu, mu, solution);
 }
 
-void write_solution(Problem &problem, const ToolOptions &options, const Mu &mu,
+void write_solution(Problem &problem, const std::string &vtu, const Mu &mu,
                     const HfSolution &solution) {
-  if (options.vtu.empty()) return;
+  if (vtu.empty()) return;
+  const Scene &scene = problem.scene();
   ReducedModel mesh;
   describe_mesh(problem, mesh);
   gather_mesh(problem, mesh);
   collectively(problem.comm(), [&] {
     if (rank_of(problem.comm()) == 0)
-      print_written(std::cout,
-                    write_vtu(options.vtu, options.scene, expand(options.scene.parameters, mu),
-                              mesh, solution.u, solution.lambda));
+      print_written(std::cout, write_vtu(vtu, scene, expand(scene.parameters, mu), mesh, solution.u,
+                                         solution.lambda));
   });
 }
 

@@ -34,23 +34,23 @@ StageRow snapshot_row(std::size_t training, const Groups &groups, const SweepRep
 }
 
 /// What of the solves is done once for all mu.
-std::string factorisation_text(const ToolOptions &options) {
-  if (!has_multipliers(options.scene))
+std::string factorisation_text(const Setup &setup) {
+  if (!has_multipliers(setup.scene))
     return "one serves many Newton steps, as long as conjugate gradients need few iterations";
-  if (constant_stiffness(options.scene))
+  if (constant_stiffness(setup.scene))
     return "A does not depend on mu: one for the sweep, one condensed operator";
-  if (options.hf.method == HfMethod::active_set && ScaledPart::fits(options.scene))
+  if (setup.hf.method == HfMethod::active_set && ScaledPart::fits(setup.scene))
     return "a part of A is scaled: three for the sweep of each group, the part is eliminated once";
   return "A depends on mu: one for each solve";
 }
 
 } // namespace
 
-StageTable preparation_stages(const ToolOptions &options, std::size_t training,
-                              const Groups &groups, const SweepReport *sweep) {
+StageTable preparation_stages(const Setup &setup, std::size_t training, const Groups &groups,
+                              const SweepReport *sweep) {
   StageTable rows{
-      {stage::mesh, mesh_text(options.mesh, options.scene)},
-      {StageName("factorisations"), factorisation_text(options), StageKind::part},
+      {stage::mesh, mesh_text(setup.mesh, setup.scene)},
+      {StageName("factorisations"), factorisation_text(setup), StageKind::part},
       snapshot_row(training, groups, sweep),
       {stage::distributed_mesh, "for the reduction on all ranks"},
   };

@@ -19,18 +19,18 @@ Option of_command(Option option) {
   return option;
 }
 
-Option mesh_file() {
-  Option option = text("mesh", OptionKind::file, "file", RBVI_AT(mesh.file),
+Option mesh_file(Setup &o) {
+  Option option = text("mesh", OptionKind::file, "file", o.mesh.file,
                        "Gmsh file (MSH 2.2, 4.0 or 4.1, text or binary, order 1) whose physical "
                        "names and shape are those that -help -case FILE lists");
-  option.shown = [](const ToolOptions &options) { return value_in_run("mesh", options.mesh.file); };
+  option.shown = [&o] { return value_in_run("mesh", o.mesh.file); };
   return otherwise("built in", option);
 }
 
-std::vector<Option> of_runs() {
+std::vector<Option> of_runs(ToolOptions &o) {
   return {
       of_command(
-          text("case", OptionKind::text, "file", RBVI_AT(case_name),
+          text("case", OptionKind::text, "file", o.case_name,
                "case file, or one of options alone ('option: value' per line) that names it by "
                "'case: FILE'; without it that of -out is read")),
       {"variant", OptionKind::text, "variant of the case (rbvi -help -case FILE)", "name", "none"},
@@ -39,32 +39,32 @@ std::vector<Option> of_runs() {
        "none"},
       {"scene", OptionKind::text,
        "name of a scene that a program of its own adds to rbvi, in place of -case", "name"},
-      of_command(text("out", OptionKind::text, "directory", RBVI_AT(out),
+      of_command(text("out", OptionKind::text, "directory", o.out,
                       "directory of the run: everything is written there")),
       {"parameters", OptionKind::text,
        "names of the parameters that vary, in the order of -mu; the others keep one value", "names",
        "the scene's"},
       kept(otherwise("the scene's",
-                     text("train", OptionKind::set, "set", RBVI_AT(train),
+                     text("train", OptionKind::set, "set", o.train,
                           "parameters of the training set: grid:5,5,5 | random:COUNT:SEED | COUNT "
                           "(seed 1) | corners (and centres of faces of the box) | file.csv with a "
                           "header of names; several with ' + ' between them; 'grid:61 in "
                           "radius=0.7,1.15', and random likewise, in a part of the box")),
            "training"),
-      otherwise("the scene's", text("valid", OptionKind::set, "set", RBVI_AT(valid),
+      otherwise("the scene's", text("valid", OptionKind::set, "set", o.valid,
                                     "parameters of the validation set, given as -train is; verify "
                                     "measures at the corners and faces of the box, too")),
       of_command(
-          text("mu", OptionKind::text, "parameter", RBVI_AT(mu),
+          text("mu", OptionKind::text, "parameter", o.mu,
                "parameter at which solve solves: 0.18,0.02,-0.01 or radius=0.18,center_x=0.02")),
       of_command(text(
-          "vtu", OptionKind::text, "file", RBVI_AT(vtu),
+          "vtu", OptionKind::text, "file", o.vtu,
           "file to which solve, and check, write displacement and stresses; contact goes to "
           "FILE_contact, of several contacts each to FILE_contact_NAME, what check draws of the "
           "case to FILE_mesh, FILE_surface and FILE_partners")),
-      of_command(text("csv", OptionKind::text, "file", RBVI_AT(csv),
+      of_command(text("csv", OptionKind::text, "file", o.csv,
                       "file to which solve writes its outputs as a table")),
-      flag("verify_stability", RBVI_AT(stability),
+      flag("verify_stability", o.stability,
            "verify: measure inf-sup constants and their bounds besides errors"),
       kept(
           use::not_exact,
@@ -79,27 +79,26 @@ std::vector<Option> of_runs() {
                            "linearised at the state before (A.7), not accelerated",
                            "-nitsche_quadrature interpolated: Newton's method (4.79) as published, "
                            "from u_0 = 0 and without a rescue"}),
-                      RBVI_AT(online_method),
+                      o.online_method,
                       "how the model answers, in verify and bench, and later in rbvi-online"))),
       of_command(
-          rising("bench_growth", refinements, RBVI_AT(growth),
+          rising("bench_growth", refinements, o.growth,
                  "bench: measure what offline costs, stage by stage, on the meshes with these "
                  "-mesh_refine, with every number of ranks per solve that divides the ranks or "
                  "with that of the command line; run time against error is then not measured")),
-      of_command(flag("plan", RBVI_AT(plan),
+      of_command(flag("plan", o.plan,
                       "print which stages would run, with the memory and time "
                       "that are foreseen, and stop")),
-      of_command(flag("run", RBVI_AT(run_tests),
+      of_command(flag("run", o.run_tests,
                       "check: solve at the tests of the case, and compare what they expect"))};
 }
 
-std::vector<Option> of_meshes() {
-  return {kept(mesh_file(), "mesh_file"),
-          kept(number("mesh_refine", refinements, RBVI_AT(mesh.refine),
-                      "how many times all edges are halved"))};
+std::vector<Option> of_meshes(Setup &o) {
+  return {kept(mesh_file(o), "mesh_file"), kept(number("mesh_refine", refinements, o.mesh.refine,
+                                                       "how many times all edges are halved"))};
 }
 
-std::vector<Option> solver_rows() {
+std::vector<Option> solver_rows(Setup &o) {
   return {
       only(use::multipliers,
            choice("hf_method",
@@ -111,7 +110,7 @@ std::vector<Option> solver_rows() {
                                               "PETSc's solver of variational inequalities (SNES "
                                               "VI): it bounds single nodes, so "
                                               "it needs -lumped yes and no friction"}),
-                  RBVI_AT(hf.method), "method that solves the full problem")),
+                  o.hf.method, "method that solves the full problem")),
       only(
           use::active_set,
           choice(
@@ -123,27 +122,27 @@ std::vector<Option> solver_rows() {
                    "does not change",
                    "for the displacement, of which each active constraint eliminates one dof; "
                    "starts on the coarser meshes that -mesh_refine has"}),
-              RBVI_AT(hf.contact), "for which unknown active_set solves its linear systems")),
-      number("contact_gather", {0, 1000000000}, RBVI_AT(contact_gather),
+              o.hf.contact, "for which unknown active_set solves its linear systems")),
+      number("contact_gather", {0, 1000000000}, o.contact_gather,
              "each rank evaluates a whole interface with up to this many multipliers, and its own "
              "part of a larger one (of two bodies always the whole)")};
 }
 
-std::vector<Option> of_uzawa() {
+std::vector<Option> of_uzawa(HfOptions &o) {
   return {
       number(
-          "uzawa_tolerance", {1e-15, 0.1}, RBVI_AT(hf.uzawa.tolerance),
+          "uzawa_tolerance", {1e-15, 0.1}, o.uzawa.tolerance,
           "uzawa stops at this relative change of the multipliers; a KKT residual above 1e-2, or "
           "10 times this, is an error then"),
-      number("uzawa_max_iterations", {1, 100000000}, RBVI_AT(hf.uzawa.max_iterations),
+      number("uzawa_max_iterations", {1, 100000000}, o.uzawa.max_iterations,
              "largest number of iterations of uzawa"),
-      flag("uzawa_accelerated", RBVI_AT(hf.uzawa.accelerated),
+      flag("uzawa_accelerated", o.uzawa.accelerated,
            "accelerate uzawa by Nesterov's extrapolation with restart"),
-      number("uzawa_step", positive, RBVI_AT(hf.uzawa.step),
+      number("uzawa_step", positive, o.uzawa.step,
              "step rho of uzawa; 0: 1 / largest eigenvalue of B A^-1 B^T")};
 }
 
-std::vector<Option> of_iterations() {
+std::vector<Option> of_iterations(HfOptions &o) {
   return {
       choice(
           "nonlinear_method",
@@ -156,62 +155,61 @@ std::vector<Option> of_iterations() {
                "kacanov, accelerated by three earlier states (Anderson)",
                "takes exact residuals and a tangent from averages at the nodes: that of newton "
                "without friction, with it that of kacanov, accelerated"}),
-          RBVI_AT(hf.nonlinear.method), "iteration for contact that depends on the displacement"),
-      number("nonlinear_tolerance", {1e-13, 0.1}, RBVI_AT(hf.nonlinear.tolerance),
+          o.nonlinear.method, "iteration for contact that depends on the displacement"),
+      number("nonlinear_tolerance", {1e-13, 0.1}, o.nonlinear.tolerance,
              "stop at this relative change of u and of the multipliers (A.8)"),
-      number("nonlinear_max_steps", {1, 100000}, RBVI_AT(hf.nonlinear.max_steps),
-             "largest number of steps"),
-      number("nonlinear_load_steps", {0, 1000}, RBVI_AT(hf.nonlinear.load_steps),
+      number("nonlinear_max_steps", {1, 100000}, o.nonlinear.max_steps, "largest number of steps"),
+      number("nonlinear_load_steps", {0, 1000}, o.nonlinear.load_steps,
              "number of load steps if the first attempt fails; 0: a failure is an error")};
 }
 
-Option ranks_per_solve() {
+Option ranks_per_solve(int &place) {
   Option option =
-      number("sweep_ranks_per_solve", {1, 1000000}, RBVI_AT(ranks_per_solve),
+      number("sweep_ranks_per_solve", {1, 1000000}, place,
              "how many ranks share one solve, a divisor of all ranks; auto: chosen by the sizes of "
              "set and mesh and by the memory of the nodes, -plan prints it");
   option.values += ", auto";
-  option.read = [read_number = option.read](const std::string &value, ToolOptions &options) {
+  option.read = [&place, read_number = option.read](const std::string &value) {
     if (value == "auto")
-      options.ranks_per_solve = 0;
+      place = 0;
     else
-      while_doing("reading -sweep_ranks_per_solve, a number or auto",
-                  [&] { read_number(value, options); });
+      while_doing("reading -sweep_ranks_per_solve, a number or auto", [&] { read_number(value); });
   };
-  option.shown = [](const ToolOptions &options) {
-    return options.ranks_per_solve == 0 ? "auto" : std::to_string(options.ranks_per_solve);
-  };
+  option.shown = [&place] { return place == 0 ? "auto" : std::to_string(place); };
   return otherwise("auto", option);
 }
 
-std::vector<Option> of_sweeps() {
+std::vector<Option> of_sweeps(OfflineOptions &o) {
   return {
-      ranks_per_solve(),
+      ranks_per_solve(o.ranks_per_solve),
       number(
-          "sweep_max_failures", {0, 1}, RBVI_AT(max_failures),
+          "sweep_max_failures", {0, 1}, o.max_failures,
           "share of a set that may fail; if more does, no model is made and nothing is measured")};
 }
 
-bool is_kept(const Option &option, const ToolOptions &options) {
+bool is_kept(const Option &option, const OfflineOptions &options) {
   const Use *runs = option.kept == nullptr ? option.use : option.kept;
   return !option.kept_as.empty() && (runs == nullptr || is_of(*runs, options));
 }
 
 } // namespace
 
+std::vector<Option> options_of(ToolOptions &options) {
+  std::vector<Option> all;
+  add("Run", of_runs(options), all);
+  add("Mesh", of_meshes(options), all);
+  add("High-fidelity solver", solver_rows(options), all);
+  add("High-fidelity solver", only(use::uzawa, of_uzawa(options.hf)), all);
+  add("Large deformations", only(use::following, of_iterations(options.hf)), all);
+  add("Sweep", of_sweeps(options), all);
+  for (Option &option : reduction_options(options))
+    all.push_back(std::move(option));
+  return all;
+}
+
 const std::vector<Option> &tool_options() {
-  static const std::vector<Option> options = [] {
-    std::vector<Option> all;
-    add("Run", of_runs(), all);
-    add("Mesh", of_meshes(), all);
-    add("High-fidelity solver", solver_rows(), all);
-    add("High-fidelity solver", only(use::uzawa, of_uzawa()), all);
-    add("Large deformations", only(use::following, of_iterations()), all);
-    add("Sweep", of_sweeps(), all);
-    for (Option &option : reduction_options())
-      all.push_back(std::move(option));
-    return all;
-  }();
+  static ToolOptions defaults;
+  static const std::vector<Option> options = options_of(defaults);
   return options;
 }
 
@@ -221,11 +219,14 @@ const Option *find_option(const std::string &name) {
   return found == tool_options().end() ? nullptr : &*found;
 }
 
-std::map<std::string, std::string> kept_settings(const ToolOptions &options) {
+std::map<std::string, std::string> kept_settings(const OfflineOptions &options) {
   std::map<std::string, std::string> settings;
-  for (const Option &option : tool_options())
+  ToolOptions all;
+  const std::vector<Option> table = options_of(all);
+  static_cast<OfflineOptions &>(all) = options;
+  for (const Option &option : table)
     if (is_kept(option, options))
-      if (const std::string value = option.shown(options); !value.empty())
+      if (const std::string value = option.shown(); !value.empty())
         settings[option.kept_as] = value;
   return settings;
 }

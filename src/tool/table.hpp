@@ -35,15 +35,18 @@ struct Option {
   std::string group{};           ///< heading that it stands below
 
   /// Reads a value into its place; throws bad_input. Empty: read before all others.
-  std::function<void(const std::string &value, ToolOptions &options)> read{};
-  /// The value in its place as text.
-  std::function<std::string(const ToolOptions &options)> shown{};
-  const Use *use = nullptr;  ///< runs that it is for; null: all
+  std::function<void(const std::string &value)> read{};
+  std::function<std::string()> shown{}; ///< the value in its place as text
+  const Use *use = nullptr;             ///< runs that it is for; null: all
+  bool waits = true;         ///< in a case file, for another command line, where it has no effect
   std::string kept_as{};     ///< among the settings of a model of such runs; "": in none
   const Use *kept = nullptr; ///< where these are not the runs whose models keep it
 };
 
-/// All options of rbvi that are not a scene's own, those of a group together.
+/// All options of rbvi that are not a scene's own, those of a group together; their places are in
+/// `options`, which has the defaults, and outlives them where it is.
+std::vector<Option> options_of(ToolOptions &options);
+/// With places of their own: for all but values.
 const std::vector<Option> &tool_options();
 
 struct Command {
@@ -69,6 +72,6 @@ std::vector<std::pair<std::string, Scene>> variants(const SceneEntry &entry);
 std::vector<std::pair<Parameter, std::string>> parameters_of(const SceneEntry &entry);
 
 /// Throws bad_input for options that do not go together, or not with the scene.
-void check_rules(const ToolOptions &options);
+void check_rules(const OfflineOptions &options);
 
 } // namespace rbvi

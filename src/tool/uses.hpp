@@ -8,13 +8,13 @@ namespace rbvi {
 /// Runs of one kind. An option for these alone is refused on the command line of others.
 struct Use {
   const Use *within; ///< of these alone; null: of all
-  bool (*in)(const ToolOptions &options);
+  bool (*in)(const OfflineOptions &options);
   const char *is_for; ///< as the refusal says it: "-hf_method uzawa"
 };
 
 /// The outermost use that the run is not of; null: it is of all of them.
-const Use *unmet(const Use &use, const ToolOptions &options);
-inline bool is_of(const Use &use, const ToolOptions &options) {
+const Use *unmet(const Use &use, const OfflineOptions &options);
+inline bool is_of(const Use &use, const OfflineOptions &options) {
   return unmet(use, options) == nullptr;
 }
 

@@ -187,7 +187,7 @@ void write_separation(const fs::path &path, Problem &problem, const ReducedModel
 /// High-fidelity answers at the corners and faces of the box, but for those in `validation`; rank 0
 /// says where there is none. Collective.
 std::vector<Sample> boundary_samples(MPI_Comm world, const Groups &groups, Problem &problem,
-                                     const ToolOptions &options,
+                                     const OfflineOptions &options,
                                      const std::vector<Mu> &validation) {
   const ParameterSpace &space = options.scene.parameters;
   std::vector<Mu> set = corners_and_faces(space);
@@ -209,23 +209,35 @@ void tell_of_speed(double query, double solve) {
   if (!slow.empty()) std::cout << "warning: " << slow << '\n';
 }
 
+/// Inf-sup constants and bounds, or why there are none. Collective.
+void measure_stability(MPI_Comm world, Problem &problem, const ReducedModel &model,
+                       const std::vector<ContactPoint> &training,
+                       const std::vector<ContactPoint> &validation, const fs::path &out) {
+  const std::string none = no_constants(model);
+  if (none.empty())
+    check_stability(world, problem, model, training, validation, out);
+  else if (rank_of(world) == 0)
+    std::printf("Inf-sup constants: none, %s\n", none.c_str());
+}
+
 } // namespace
 
-void command_verify(const ToolOptions &given) {
+void command_verify(const MeasureOptions &given) {
   const MPI_Comm world = PETSC_COMM_WORLD;
   ReducedModel model = model_of_run(world, given);
-  const ToolOptions options = adopt_model(given, model);
-  check_eigen_options(options, EigenUse::constants);
+  const MeasureOptions options = adopt_model(given, model);
+  check_eigen_options(options, options.stability ? EigenUse::constants : EigenUse::no_constants);
   const std::vector<Mu> validation = validation_set(options, model);
   const std::vector<Mu> training = from_columns(model.made.trained_mu);
-  const Grouping grouping =
-      group_ranks(world, options.scene, options.mesh, validation.size(), options.ranks_per_solve);
-  const Groups groups(world, grouping.ranks_per_solve);
+  const Groups groups(world, group_ranks(world, options.scene, options.mesh, validation.size(),
+                                         options.ranks_per_solve)
+                                 .ranks_per_solve);
   Workspace work(world, groups, options);
-  check_problem(work.group_problem(), model, options);
+  check_problem(work.group_problem(), model, options.out);
   const Sweep sweep = run_sweep(world, groups, work.group_problem(), options.hf, validation,
                                 {options.out / "samples"});
-  check_failures(options, sweep.report, validation.size(), "validation");
+  check_failures(options.scene.parameters, options.max_failures, sweep.report, validation.size(),
+                 "validation");
   const std::vector<Sample> &answers = sweep.samples;
   const std::vector<Sample> further =
       boundary_samples(world, groups, work.group_problem(), options, validation);
@@ -257,18 +269,14 @@ void command_verify(const ToolOptions &given) {
                                .samples)
           : at_rest(training);
   write_separation(out / "eim.csv", problem, model, points, contact_points(answers), truths.mu);
-  const int rank = rank_of(world);
-  const std::string none = no_constants(model);
-  if (options.stability && none.empty())
-    check_stability(world, problem, model, points, contact_points(answers), out);
-  else if (options.stability && rank == 0)
-    std::printf("Inf-sup constants: none, %s\n", none.c_str());
-  if (rank == 0) {
+  if (options.stability)
+    measure_stability(world, problem, model, points, contact_points(answers), out);
+  if (rank_of(world) == 0) {
     for (const auto *samples : {&answers, &further})
       tell_of_samples(problem.scene(), problem.contact(), *samples, std::cout);
     print_written(std::cout, {out, options.out / "model.h5"});
   }
-  report_failures(options, sweep.report, validation.size(), "validation",
+  report_failures(options.scene.parameters, sweep.report, validation.size(), "validation",
                   "measured over the others");
 }
 

@@ -60,7 +60,7 @@ protected:
     collectively(PETSC_COMM_WORLD, [&] {
       if (rank_of(PETSC_COMM_WORLD) != 0) return;
       fs::create_directories(folder_);
-      written_ = write_check(options_, problem, mesh_with_groups(options_.scene, ""));
+      written_ = write_check(options_.vtu, problem, mesh_with_groups(options_.scene, ""));
     });
   }
   ~Check() override {
@@ -80,7 +80,7 @@ TEST_F(Check, TheMeshAndItsSurfaceHaveTheirGroups) {
   check("rigid_disk");
   if (!first()) return;
   ASSERT_EQ(written_.size(), 5U);
-  EXPECT_EQ(files_of_check(options_).size(), 5U);
+  EXPECT_EQ(files_of_check(options_.vtu, options_.scene).size(), 5U);
   const std::vector<double> core = array_in(folder_ / "u_mesh.vtu", "core"),
                             arc = array_in(folder_ / "u_surface.vtu", "arc"),
                             contact = array_in(folder_ / "u_surface.vtu", "contact"),
@@ -130,7 +130,7 @@ TEST_F(Check, BodiesFaceEachOtherAndEachContactHasItsFiles) {
   }
   check("roller");
   if (!first()) return;
-  EXPECT_EQ(files_of_check(options_).size(), 8U);
+  EXPECT_EQ(files_of_check(options_.vtu, options_.scene).size(), 8U);
   EXPECT_EQ(written_.size(), 6U) << "the gap of the second one does not vary in the box";
   for (const char *place : {"_upper_plate_middle", "_lower_plate_middle"}) {
     const Partners plate = at(place);

@@ -8,41 +8,41 @@
 namespace rbvi {
 
 /// Snapshots, bases, interpolation and the model file. Collective on the world.
-void command_offline(const ToolOptions &options);
+void command_offline(const OfflineOptions &options);
 
 /// One high-fidelity solve. Collective on the world.
-void command_solve(const ToolOptions &options);
+void command_solve(const OfflineOptions &options, const SolveOptions &solve);
 
 /// The files of -vtu, and a high-fidelity answer in them; nothing without that option. Collective.
-std::vector<NamedFile> files_of_solution(const ToolOptions &options);
-void write_solution(Problem &problem, const ToolOptions &options, const Mu &mu,
+std::vector<NamedFile> files_of_solution(const std::string &vtu, const Scene &scene);
+void write_solution(Problem &problem, const std::string &vtu, const Mu &mu,
                     const HfSolution &solution);
 
 /// Reduced against high-fidelity over the validation set; writes tables and the measured errors
 /// into the model file. Collective on the world.
-void command_verify(const ToolOptions &options);
+void command_verify(const MeasureOptions &options);
 
-/// Run time against error, or (ToolOptions::growth) command_growth. Collective on the world.
-void command_bench(const ToolOptions &options);
+/// Run time against error, or (MeasureOptions::growth) command_growth. Collective on the world.
+void command_bench(const MeasureOptions &options);
 
 /// What offline takes on several meshes, by several ranks per solve. Collective on the world.
-void command_growth(const ToolOptions &options);
+void command_growth(const MeasureOptions &options);
 
 /// What check writes beside the file of -vtu: the mesh with its groups, its surface, and of each
 /// contact the partners at some parameters. The names, none without that option; and the files, by
 /// one rank.
-std::vector<NamedFile> files_of_check(const ToolOptions &options);
-std::vector<std::filesystem::path> write_check(const ToolOptions &options, const Problem &problem,
+std::vector<NamedFile> files_of_check(const std::string &vtu, const Scene &scene);
+std::vector<std::filesystem::path> write_check(const std::string &vtu, const Problem &problem,
                                                const SerialMesh &mesh);
 
 /// A case: its text and variants, its mesh, its functions, contact over the box, one solve. What
 /// was read is printed, every defect told; and its tests, where they are asked for. Collective on
 /// the world.
-void command_check(const ToolOptions &options);
+void command_check(const MeasureOptions &options, const SolveOptions &solve);
 
 /// Solves at the tests of the scene, and prints what is expected, found, and how far it is off.
 /// Throws failure if one does not pass. Collective on the world.
-void run_tests(const ToolOptions &options);
+void run_tests(const Setup &setup);
 
 /// Writes NAME/case.yaml, a case to begin with; of a Gmsh mesh, if one is named, with its parts.
 void command_new(const std::string &name, const std::string &mesh);

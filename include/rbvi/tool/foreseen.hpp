@@ -17,13 +17,13 @@ struct RunSizes {
 };
 
 /// Before the mesh is made. Collective on `world`.
-RunSizes sizes_by_count(MPI_Comm world, const Groups &groups, const ToolOptions &options);
+RunSizes sizes_by_count(MPI_Comm world, const Groups &groups, const Setup &setup);
 /// With the group's problem, which is there, and the options of its solves. Collective on `world`.
 RunSizes sizes_of(MPI_Comm world, const Problem &problem, const HfOptions &options,
                   RunSizes counted);
 
 /// By the names of the stages.
-Foresight foresee(const ToolOptions &options, const std::vector<Mu> &training,
+Foresight foresee(const OfflineOptions &options, const std::vector<Mu> &training,
                   const RunSizes &sizes);
 
 /// What is free on the tightest node, and what its ranks hold. Collective.

@@ -17,7 +17,7 @@ struct OfflineRun {
 
 /// The training set of the options. Throws bad_input where it, the reduction or the options of
 /// SLEPc's objects do not fit the scene.
-std::vector<Mu> checked_training(const ToolOptions &options);
+std::vector<Mu> checked_training(const OfflineOptions &options);
 
 /// A run before its first solve.
 struct OfflinePlan {
@@ -32,13 +32,13 @@ struct OfflinePlan {
 /// Makes the mesh, and foresees what the stages will take. Throws bad_input, as check_memory() does
 /// with what is known, before the mesh is made; whether there is room for all stages is for
 /// run_offline() to ask. Collective on `world`.
-OfflinePlan plan_offline(MPI_Comm world, const Groups &groups, const ToolOptions &options,
+OfflinePlan plan_offline(MPI_Comm world, const Groups &groups, const OfflineOptions &options,
                          const std::vector<Mu> &training);
 
 /// Solves at the training set by groups of ranks, reduces, and writes the run directory of the
 /// options. Throws bad_input as check_memory() does, failure if more samples fail than the options
 /// allow. Collective on `world`.
-OfflineRun run_offline(MPI_Comm world, const Groups &groups, const ToolOptions &options,
+OfflineRun run_offline(MPI_Comm world, const Groups &groups, const OfflineOptions &options,
                        const std::vector<Mu> &training, OfflinePlan plan);
 
 } // namespace rbvi

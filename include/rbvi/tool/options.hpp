@@ -15,29 +15,49 @@
 
 namespace rbvi {
 
-struct ToolOptions {
+/// What is solved, and by which solver.
+struct Setup {
   std::shared_ptr<const Registry> registry; ///< of the program, with the scene of the case
   Scene scene; ///< with its parameters as freed, fixed and bounded by the options
   MeshOptions mesh;
-  std::string train, valid; ///< as parse_set reads them
   HfOptions hf;
-  ReduceOptions reduce;
   int contact_gather = static_cast<int>(default_contact_gather);
-  int ranks_per_solve = 0;         ///< 0: auto, as group_ranks chooses
-  double max_failures = 0.1;       ///< share of a set that may fail
+};
+
+/// Where a run reads and writes, and how it was called.
+struct RunFiles {
   std::filesystem::path case_name; ///< of -case; "" where it is that of the run directory
   std::filesystem::path out;       ///< run directory; "" where none is given
   std::string case_file;           ///< all options of the run, for its own file (case_of_run)
   std::string scene_text;          ///< of the case, which stands beside it; "": of the program
   std::vector<std::string> command_line;        ///< names of the options that stand there
   std::map<std::string, std::string> set_files; ///< option -> the file that holds its set
-  std::string mu, vtu, csv;
-  bool plan = false;
-  bool run_tests = false;                           ///< check: those of the case
-  bool stability = true;                            ///< verify: inf-sup constants and bounds too
+};
+
+/// What a reduced model is made of, and how.
+struct OfflineOptions : Setup, RunFiles {
+  std::string train; ///< as parse_set reads it
+  ReduceOptions reduce;
   OnlineMethod online_method = OnlineMethod::exact; ///< of the queries of the model
+  int ranks_per_solve = 0;                          ///< 0: auto, as group_ranks chooses
+  double max_failures = 0.1;                        ///< share of a set that may fail
+  bool plan = false;
+};
+
+/// What is measured of it.
+struct MeasureOptions : OfflineOptions {
+  std::string valid;       ///< as parse_set reads it
+  bool stability = true;   ///< verify: inf-sup constants and bounds too
   std::vector<int> growth; ///< bench: refinements whose cost is measured; empty: time against error
 };
+
+/// A single solve, and what is written of it.
+struct SolveOptions {
+  std::string mu, vtu, csv;
+  bool run_tests = false; ///< check: those of the case
+};
+
+struct ToolOptions : MeasureOptions, SolveOptions {};
 
 /// "-name": a dash and a letter, as PETSc sees it.
 bool is_option(const std::string &word);
@@ -54,14 +74,14 @@ std::vector<std::string> normalised_arguments(int argc, char **argv);
 ToolOptions read_options(MPI_Comm comm, const std::string &command, const Registry &registry);
 
 /// The options that a model keeps among its settings, by the names that they have there.
-std::map<std::string, std::string> kept_settings(const ToolOptions &options);
+std::map<std::string, std::string> kept_settings(const OfflineOptions &options);
 
 /// The case file that a run leaves in its directory, read where no other is named.
 std::filesystem::path case_of_run(const std::filesystem::path &out);
 
 /// Collective. Throws bad_input if one of the files that a command will write is one that its
 /// options name as input, or another of them, or if the run's case file would replace the user's.
-void check_outputs(MPI_Comm comm, const ToolOptions &options,
+void check_outputs(MPI_Comm comm, const RunFiles &files, const std::string &mesh_file,
                    const std::vector<NamedFile> &outputs);
 
 /// How the options of PETSc objects of ours begin.
@@ -76,12 +96,13 @@ void check_solver_options(Problem &problem, const HfOptions &options);
 enum class EigenUse {
   none,
   supremizers, ///< offline: the projected greedy, prefix pga_, and its tolerance, prefix infsup_
-  constants    ///< verify: inf-sup constants, prefix infsup_
+  constants,   ///< verify: inf-sup constants, prefix infsup_
+  no_constants ///< verify -verify_stability no
 };
 
 /// Throws bad_input if one of their options was given that nothing of the run asks for, or whose
 /// value SLEPc refuses. Those of another command may stand in a case file, not on the command line.
-void check_eigen_options(const ToolOptions &options, EigenUse use);
+void check_eigen_options(const OfflineOptions &options, EigenUse use);
 
 /// Prints the usage, the options above and those of the scenes; or, where one is named, options,
 /// parameters and mesh of that scene alone; or, of a command, its usage and its options alone.

@@ -19,7 +19,7 @@ std::string value_in_run(const std::string &name, const std::string &value);
 
 /// Writes the case file of a run that begins, and the sets that it names; removes temporary files
 /// of killed runs. Collective. Throws failure, or bad_input for a set that cannot be read.
-void begin_run(MPI_Comm world, const ToolOptions &options);
+void begin_run(MPI_Comm world, const RunFiles &files);
 
 /// Removes the temporary files of killed runs. By one rank.
 void sweep_up(const std::filesystem::path &out);

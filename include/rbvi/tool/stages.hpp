@@ -15,8 +15,8 @@ inline constexpr StageName mesh("mesh"), snapshots("snapshots"),
 } // namespace stage
 
 /// What runs before the reduction. `sweep` null: as planned.
-StageTable preparation_stages(const ToolOptions &options, std::size_t training,
-                              const Groups &groups, const SweepReport *sweep = nullptr);
+StageTable preparation_stages(const Setup &setup, std::size_t training, const Groups &groups,
+                              const SweepReport *sweep = nullptr);
 
 /// What runs after the reduction.
 StageTable closing_stages();

@@ -13,7 +13,7 @@ class Workspace {
 public:
   /// Collective on `world`. Makes the group's problem and checks its scene, and the options of its
   /// solvers.
-  Workspace(MPI_Comm world, const Groups &groups, const ToolOptions &options);
+  Workspace(MPI_Comm world, const Groups &groups, const Setup &setup);
   Problem &group_problem() const { return *group_; } ///< not after end_of_solves
   /// Lets go of the group's problem, where it is not the world's: its solves are over.
   void end_of_solves() {
@@ -24,7 +24,7 @@ public:
 
 private:
   MPI_Comm world_;
-  const ToolOptions &options_;
+  const Setup &setup_;
   bool shared_;
   std::unique_ptr<Problem> group_, all_;
 };
