@@ -52,21 +52,20 @@ Traces traces_of(const Grid &grid) {
 }
 
 void add_pieces(const Traces &traces, bool turned, OutputLines &lines) {
-  for (const auto &ends : traces) {
-    const auto &[first, last] = ends;
-    const double length =
-        std::hypot(last[field::x] - first[field::x], last[field::y] - first[field::y]);
-    lines.add(
-        [&ends](double s) {
-          OutputFields fields;
-          for (std::size_t i = 0; i < fields.size(); ++i)
-            fields[i] = (1 - s) * ends[0][i] + s * ends[1][i];
-          return fields;
-        },
-        [&](const OutputFields &fields) {
-          return length * circumference(turned, {fields[field::x], 0, 0});
-        });
-  }
+  lines.add(
+      traces.size(),
+      [&](std::size_t piece, double s) {
+        const auto &[first, last] = traces[piece];
+        OutputFields fields;
+        for (std::size_t i = 0; i < fields.size(); ++i)
+          fields[i] = (1 - s) * first[i] + s * last[i];
+        return fields;
+      },
+      [&](std::size_t piece, const OutputFields &fields) {
+        const auto &[first, last] = traces[piece];
+        return std::hypot(last[field::x] - first[field::x], last[field::y] - first[field::y]) *
+               circumference(turned, {fields[field::x], 0, 0});
+      });
 }
 
 } // namespace

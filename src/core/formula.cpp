@@ -143,8 +143,8 @@ const Maker<PointValue> expression_value_maker{
 const Maker<FieldValues> expression_fields_maker{
     "expression", version, [](const Record &of) -> std::function<FieldValues> {
       return [own = Evaluator(of, output_fields(), 2, 2)](const FullMu &mu, const double *fields,
-                                                          double *results) {
-        own(mu, fields, results);
+                                                          std::size_t count, double *results) {
+        own(mu, fields, results, count);
       };
     }};
 

@@ -105,43 +105,43 @@ void add_facet(const OutputState &state, const OutputPart &part, OutputLines &li
   const DisplacedCell cell = state.displaced(part.cell);
   const auto [length, normal] = facet_measure(2, facet_cell(cell.cell, part.facet).mapped);
   lines.add(
-      [&, &normal = normal](double s) {
+      1,
+      [&, &normal = normal](std::size_t, double s) {
         OutputFields fields = fields_at(state.scene, state.mu, cell, on_facet(part.facet, s));
         fields[field::nx] = normal[0];
         fields[field::ny] = normal[1];
         return fields;
       },
-      [&, size = length](const OutputFields &fields) {
+      [&, size = length](std::size_t, const OutputFields &fields) {
         return size * circumference(state.scene.axisymmetric, {fields[field::x], 0, 0});
       });
 }
 
 /// A triangle by lines at the shares r of the way from its first vertex to the opposite edge: of
 /// Gauss, where they are summed, else from end to end.
-void add_triangle(const OutputState &state, const OutputPart &part, bool extreme,
-                  OutputLines &lines) {
-  const double away = std::sqrt(0.15);
-  const std::array<std::array<double, 2>, 3> summed{
-      {{0.5 - away, 5.0 / 18}, {0.5, 8.0 / 18}, {0.5 + away, 5.0 / 18}}},
-      ends{{{0, 0}, {0.5, 0}, {1, 0}}};
+void add_triangle(const OutputState &state, const OutputPart &part, OutputLines &lines) {
+  const auto &places = lines.places();
   const DisplacedCell cell = state.displaced(part.cell);
   const double area = volume_of(2, cell.cell.mapped);
-  for (const auto &[r, weight] : extreme ? ends : summed)
-    lines.add(
-        [&, r = r](double s) {
-          return fields_at(state.scene, state.mu, cell, {1 - r, r * (1 - s), r * s, 0});
-        },
-        [&, size = 2 * area * r * weight](const OutputFields &fields) {
-          return size * circumference(state.scene.axisymmetric, {fields[field::x], 0, 0});
-        });
+  lines.add(
+      places.size(),
+      [&](std::size_t line, double s) {
+        const double r = places[line].s;
+        return fields_at(state.scene, state.mu, cell, {1 - r, r * (1 - s), r * s, 0});
+      },
+      [&](std::size_t line, const OutputFields &fields) {
+        return 2 * area * places[line].s * places[line].weight *
+               circumference(state.scene.axisymmetric, {fields[field::x], 0, 0});
+      });
 }
 
 void add_point(const OutputState &state, const OutputPart &part, const Point &point,
                OutputLines &lines) {
   const DisplacedCell cell = state.displaced(part.cell);
   const Barycentric at = barycentric_of(2, cell.cell.reference, point);
-  lines.add([&](double) { return fields_at(state.scene, state.mu, cell, at); },
-            [](const OutputFields &) { return 1.0; });
+  lines.add(
+      1, [&](std::size_t, double) { return fields_at(state.scene, state.mu, cell, at); },
+      [](std::size_t, const OutputFields &) { return 1.0; });
 }
 
 /// Of a, then of f.
@@ -319,14 +319,13 @@ double cell_output(const Scene &scene, int output, const FullMu &mu, const Outpu
   if (form.kind == OutputForm::Kind::reaction)
     return scene.mirror_images * reaction(state, form, parts);
   OutputLines lines(form, mu);
-  const bool extreme = form.kind == OutputForm::Kind::min || form.kind == OutputForm::Kind::max;
   for (const OutputPart &part : parts) {
     if (form.place == OutputForm::Place::point)
       add_point(state, part, form.vector, lines);
     else if (part.facet >= 0)
       add_facet(state, part, lines);
     else
-      add_triangle(state, part, extreme, lines);
+      add_triangle(state, part, lines);
   }
   return output_value(form, lines.sums(), scene.mirror_images);
 }

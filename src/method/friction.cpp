@@ -141,10 +141,18 @@ private:
       if (systems_left_ <= 0) return Outcome::limit;
       --systems_left_;
       h_.require(sets.support(laws));
-      const Solved solved = step(laws, sets, std::move(key), point);
+      const System &system = system_of(laws, sets, std::move(key));
+      const auto solve = [&](int refinements) {
+        return system.step(h_, q_, laws, refinements, point);
+      };
+      const Solved solved = solve(laws.dim == 2 ? 0 : 1);
       if (solved == Solved::indefinite) return Outcome::indefinite;
       if (solved == Solved::singular) return Outcome::cycles;
       Verdict verdict = judge(diagonal(), laws, point, sets, options_.tolerance);
+      if (laws.dim == 2 && !verdict.changed) { // it may be the last one
+        solve(1);
+        verdict = judge(diagonal(), laws, point, sets, options_.tolerance);
+      }
       keep(laws, point, sets, verdict);
       if (settled(verdict, policy.least())) return Outcome::converged;
       if (policy.is_lost(verdict.residual)) return Outcome::cycles;
@@ -153,13 +161,13 @@ private:
   }
 
   /// `key`: of the sets, in the plane.
-  Solved step(const Laws &laws, const ActiveSets &sets, std::string key, State &point) {
-    if (&laws != &laws_ || key.empty()) return System(h_, laws, sets).step(h_, q_, laws, point);
+  const System &system_of(const Laws &laws, const ActiveSets &sets, std::string key) {
+    if (&laws != &laws_ || key.empty()) return other_.emplace(h_, laws, sets);
     if (!kept_.system || kept_.key != key) {
       kept_.system.emplace(h_, laws, sets);
       kept_.key = std::move(key);
     }
-    return kept_.system->step(h_, q_, laws, point);
+    return *kept_.system;
   }
 
   /// The sets are right and the violations below tolerance; or as small as round-off lets them be:
@@ -279,6 +287,7 @@ private:
   const Laws &laws_;
   const FrictionOptions &options_;
   Kept &kept_;
+  std::optional<System> other_;   ///< the last one of other laws
   std::set<std::string> visited_; ///< by the laws themselves
   State best_;                    ///< the solution, or the point of the least residual
   ActiveSets best_sets_;

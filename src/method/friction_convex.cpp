@@ -114,7 +114,7 @@ bool minimise(LazyColumns &h, const Vector &q, const Laws &frozen, double tolera
     sets = held_sets(diagonal, frozen, point);
     h.require(sets.support(frozen));
     State aim;
-    if (System(h, frozen, sets).step(h, q, frozen, aim) != Solved::yes) return false;
+    if (System(h, frozen, sets).step(h, q, frozen, 1, aim) != Solved::yes) return false;
     if (!follow(h, frozen, aim.x, point)) sweep(h, frozen, point);
     point = evaluate(h, q, frozen.feasible(std::move(point.x)));
   }

@@ -141,43 +141,13 @@ private:
 
 } // namespace
 
-Vector Laws::bounds(const Vector &x) const {
-  return Vector::NullaryExpr(nodes, [&](Index i) { return bound(i, x[i]); });
-}
-
-Vector Laws::feasible(Vector x) const {
-  for (Index i = 0; i < nodes; ++i) {
-    x[i] = std::max(x[i], 0.0);
-    auto tangential = x.segment(tangent(i), dim - 1);
-    const double size = tangential.norm(), limit = bound(i, x[i]);
-    if (size > limit) tangential *= limit / size;
-  }
-  return x;
-}
-
-bool Laws::jump() const {
-  for (Index i = 0; i < nodes; ++i)
-    if (at_node(i).jumps()) return true;
-  return false;
-}
-
-int Laws::steps_to(double largest) {
-  constexpr double longest = 0.25;
-  return std::max(1, static_cast<int>(std::ceil(largest / longest)));
-}
-
-Laws Laws::with_part(double part) const {
-  Laws result = *this;
-  result.coefficient *= part;
-  return result;
-}
-
 ActiveSets::ActiveSets(Index nodes, int dim)
     : active(nodes, 0), tangent(nodes, Tangent::none), direction(Matrix::Zero(dim - 1, nodes)),
       curvature(Vector::Constant(nodes, -1)) {}
 
 std::vector<Index> ActiveSets::support(const Laws &laws) const {
   std::vector<Index> result;
+  result.reserve(laws.nodes * laws.dim);
   for (Index i = 0; i < laws.nodes; ++i)
     if (is_active(i)) result.push_back(i);
   for (Index i = 0; i < laws.nodes; ++i)
@@ -188,6 +158,7 @@ std::vector<Index> ActiveSets::support(const Laws &laws) const {
 
 std::string ActiveSets::key() const {
   std::string result;
+  result.reserve(active.size());
   for (std::size_t i = 0; i < active.size(); ++i) {
     const bool slips = tangent[i] == Tangent::slip;
     const int backwards = slips && direction(0, static_cast<Index>(i)) < 0 ? 8 : 0;
@@ -198,6 +169,7 @@ std::string ActiveSets::key() const {
 
 State evaluate(const LazyColumns &h, const Vector &q, Vector x) {
   std::vector<Index> support;
+  support.reserve(x.size());
   for (Index j = 0; j < x.size(); ++j)
     if (x[j] != 0) support.push_back(j);
   auto [product, terms] = h.multiply(support, x(support));
@@ -242,6 +214,7 @@ Vector diagonal_of(const LazyColumns &h, Index size) {
 
 std::vector<Unknown> unknowns(const Laws &laws, const ActiveSets &sets) {
   std::vector<Unknown> result;
+  result.reserve(laws.nodes * laws.dim);
   for (Index i = 0; i < laws.nodes; ++i) {
     const Index t = laws.tangent(i);
     const bool slips = sets.tangent_at(i) == Tangent::slip;
@@ -337,6 +310,7 @@ void System::assemble(const LazyColumns &h, const Laws &laws) {
   const Index count = std::ssize(list_);
   matrix_.resize(count, count);
   std::vector<Index> rows, turns; // turns: rows of two entries
+  rows.reserve(count);
   for (Index k = 0; k < count; ++k) {
     rows.push_back(list_[k].first);
     if (list_[k].b != 0) turns.push_back(k);
@@ -365,23 +339,25 @@ Vector System::right_side(const Vector &y) const {
   });
 }
 
-Vector System::solve(const Vector &right) const {
+Vector System::solve(const Vector &right, int refinements) const {
   if (right.size() == 0) return right;
   const auto once = [&](const Vector &r) -> Vector {
     return symmetric_ ? cholesky_solve(lower_, r) : Vector(lu_.solve(r));
   };
   Vector u = once(right);
-  u -= once(matrix_ * u - right);
+  for (int k = 0; k < refinements; ++k)
+    u -= once(matrix_ * u - right);
   return u.cwiseProduct(unit_);
 }
 
-Solved System::step(const LazyColumns &h, const Vector &q, const Laws &laws, State &point) const {
+Solved System::step(const LazyColumns &h, const Vector &q, const Laws &laws, int refinements,
+                    State &point) const {
   if (solved_ != Solved::yes) return solved_;
   Vector x = fixed_part(laws, sets_);
   Vector start = q;
   for (Index j = laws.nodes; j < x.size(); ++j)
     if (x[j] != 0) start += x[j] * h.column(j);
-  const Vector u = solve(right_side(start));
+  const Vector u = solve(right_side(start), refinements);
   if (!u.allFinite()) return symmetric_ ? Solved::indefinite : Solved::singular;
   point = evaluate(h, q, expand(laws, sets_, list_, u, std::move(x)));
   point.negative = negative_;
@@ -392,7 +368,7 @@ Matrix System::change(const Laws &laws, const Matrix &of_q) const {
   Matrix result(of_q.rows(), of_q.cols());
   for (Index k = 0; k < of_q.cols(); ++k)
     result.col(k) =
-        expand(laws, sets_, list_, solve(right_side(of_q.col(k))), Vector::Zero(of_q.rows()));
+        expand(laws, sets_, list_, solve(right_side(of_q.col(k)), 1), Vector::Zero(of_q.rows()));
   return result;
 }
 

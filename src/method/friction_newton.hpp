@@ -114,7 +114,8 @@ public:
   /// The columns of the support of the sets are there.
   System(const LazyColumns &h, const Laws &laws, ActiveSets sets);
   /// The point that solves it; `point` is unchanged where none does.
-  Solved step(const LazyColumns &h, const Vector &q, const Laws &laws, State &point) const;
+  Solved step(const LazyColumns &h, const Vector &q, const Laws &laws, int refinements,
+              State &point) const;
   /// In the plane: changes of x by those of q (columns), while the sets stay.
   Matrix change(const Laws &laws, const Matrix &of_q) const;
 
@@ -122,8 +123,8 @@ private:
   void assemble(const LazyColumns &h, const Laws &laws);
   /// -(a y[first] + b y[second]) of each row, in its unit.
   Vector right_side(const Vector &y) const;
-  /// Of the unknowns, with one step of refinement.
-  Vector solve(const Vector &right) const;
+  /// Of the unknowns.
+  Vector solve(const Vector &right, int refinements) const;
 
   ActiveSets sets_;
   std::vector<Unknown> list_;

@@ -1,5 +1,8 @@
 #include "order.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace rbvi::friction {
 
 Order::Order(const NodeLaws &laws) : rows_(laws.rows) {
@@ -75,6 +78,37 @@ Vector smooth_start(const Vector &diagonal, const Laws &laws, const State &point
   const double mean = known > 0 ? result.sum() / static_cast<double>(known) : 1;
   for (Index j = 0; j < result.size(); ++j)
     result[j] = point.x[j] - point.w[j] / (result[j] > 0 ? result[j] : mean);
+  return result;
+}
+
+Vector Laws::bounds(const Vector &x) const {
+  return Vector::NullaryExpr(nodes, [&](Index i) { return bound(i, x[i]); });
+}
+
+Vector Laws::feasible(Vector x) const {
+  for (Index i = 0; i < nodes; ++i) {
+    x[i] = std::max(x[i], 0.0);
+    auto tangential = x.segment(tangent(i), dim - 1);
+    const double size = tangential.norm(), limit = bound(i, x[i]);
+    if (size > limit) tangential *= limit / size;
+  }
+  return x;
+}
+
+bool Laws::jump() const {
+  for (Index i = 0; i < nodes; ++i)
+    if (at_node(i).jumps()) return true;
+  return false;
+}
+
+int Laws::steps_to(double largest) {
+  constexpr double longest = 0.25;
+  return std::max(1, static_cast<int>(std::ceil(largest / longest)));
+}
+
+Laws Laws::with_part(double part) const {
+  Laws result = *this;
+  result.coefficient *= part;
   return result;
 }
 

@@ -79,7 +79,7 @@ void ConeSolver::set_y() {
 void ConeSolver::solve_dual(ReducedAnswer &answer) {
   // The columns of Y are those of y_ times `scale`: x takes the factor instead.
   const double scale = b_scale_ / std::sqrt(at_mu_.scale());
-  const NonnegativeQpReport report = qp_.solve(y_, at_mu_.half_response(f_), g_ / scale);
+  const NonnegativeQpReport report = qp_.solve(y_, at_mu_.half_response_to_load(), g_ / scale);
   if (report.unbounded)
     throw failure("the reduced constraints contradict each other: reduce again with more "
                   "supremizers (-pga_beta_fraction) or more modes (-pod_tolerance)");

@@ -60,7 +60,7 @@ ReducedAnswer FollowingSolver::solve(const FullMu &mu, Relaxed relaxed) {
                            .laws = laws_at(columns_, contact_, mu),
                            .w_product = w_product_};
   if (at_mu_.has_load()) {
-    load = at_mu_.half_response(at_mu_.load());
+    load = at_mu_.half_response_to_load();
     problem.free = model_.contact.trace * at_mu_.transposed_half_response(load);
   }
   NonlinearOptions options = steps_;

@@ -36,6 +36,7 @@ const LawAtMu &LawProblem::at(const FullMu &mu, ReducedAnswer &answer, const Vec
   if (beta.size() > 0) {
     law_.q = q_ + law_.by_beta * beta;
     law_.load = load_ + springs_ * theta_.cwiseProduct(beta);
+    law_.unloaded = unloaded_ + motions_ * theta_.cwiseProduct(beta);
   }
   return law_;
 }
@@ -44,15 +45,16 @@ void LawProblem::set(const FullMu &mu, const Vector &state, ReducedAnswer &answe
   answer.mu = mu;
   contact_->set(mu, state, answer);
   at_mu_.set(mu);
-  law_ = {contact_->g(), {}, {}, laws_at(columns_, interfaces_, mu)};
+  law_ = {contact_->g(), {}, {}, {}, laws_at(columns_, interfaces_, mu)};
   const MultiplierBasis &functions = model_.contact.law->basis;
   if (functions.normal.size() > 0) law_.b = contact_->b();
   if (model_.body.online_enriched)
     at_mu_.restrict_to(enriched_subspace(multiplier_coefficients(functions).transpose() * law_.b,
                                          model_.body.modes));
   if (at_mu_.has_load()) {
-    law_.load = at_mu_.half_response(at_mu_.load());
-    law_.q -= contact_->times(at_mu_.transposed_half_response(law_.load));
+    law_.load = at_mu_.half_response_to_load();
+    law_.unloaded = at_mu_.transposed_half_response(law_.load);
+    law_.q -= contact_->times(law_.unloaded);
   }
   friction_.emplace(
       [this](const std::vector<Index> &which) { return contact_->condensed_columns(which); },
@@ -60,13 +62,14 @@ void LawProblem::set(const FullMu &mu, const Vector &state, ReducedAnswer &answe
 }
 
 void LawProblem::set_springs(ReducedAnswer &answer) {
-  const Matrix motions = at_mu_.free_motions();
-  answer.motions = free_motions_at(at_mu_, motions, contact_->times(motions), law_.laws);
+  motions_ = at_mu_.free_motions();
+  answer.motions = free_motions_at(at_mu_, motions_, contact_->times(motions_), law_.laws);
   theta_ = spring_coefficients(model_, scene_, answer.mu);
   law_.by_beta = -answer.motions->held * theta_.asDiagonal();
-  springs_ = at_mu_.half_response(model_.body.springs);
+  springs_ = at_mu_.half_response_to_springs();
   q_ = law_.q;
   load_ = law_.load;
+  unloaded_ = law_.unloaded;
 }
 
 AtAllNodes LawProblem::at_all_nodes(const LawAtMu &law, const Vector &x) {
@@ -85,7 +88,7 @@ void LawProblem::displace(ReducedAnswer &answer) const {
       throw failure("contact reaches the edge of the nodes that the model has multipliers at: " +
                     std::string(keeps_more));
   contact_->move(at_mu_, answer);
-  if (law_.load.size() > 0) answer.u += at_mu_.transposed_half_response(law_.load);
+  if (law_.unloaded.size() > 0) answer.u += law_.unloaded;
 }
 
 LawStarts::LawStarts(const ReducedModel &model, const Scene &scene, bool warm)

@@ -46,6 +46,8 @@ ReducedBody::ReducedBody(const ReducedModel &model, const Scene &scene)
         turned(model.contact.b.reduced.col(p)
                    .reshaped(model.contact.generators, model.primal_size())
                    .transpose());
+  turned_f_ = turned(model.body.f.reduced);
+  turned_springs_ = turned(model.body.springs);
 }
 
 void ReducedBody::find_change() {
@@ -84,6 +86,7 @@ void ReducedBody::find_common_eigenvectors() {
 }
 
 Matrix ReducedBody::turned(const Matrix &loads) const {
+  if (loads.size() == 0) return Matrix(model_.primal_size(), loads.cols());
   if (eigenvectors_.size() > 0) return eigenvectors_.transpose() * loads;
   Matrix result = loads;
   if (l_.size() > 0) solve_lower(l_, result);
@@ -153,9 +156,8 @@ Vector BodyAtMu::load() const {
 }
 
 Matrix BodyAtMu::free_motions() const {
-  const Matrix &springs = body_.model_.body.springs;
-  const Matrix half = half_response(springs);
-  Matrix motions(springs.rows(), springs.cols());
+  const Matrix half = half_response_to_springs();
+  Matrix motions(body_.model_.primal_size(), half.cols());
   for (Index k = 0; k < motions.cols(); ++k)
     motions.col(k) = transposed_half_response(half.col(k));
   return motions;
@@ -208,6 +210,21 @@ Matrix BodyAtMu::half_response_of_turned(const Matrix &turned) const {
 
 Matrix BodyAtMu::half_response(const Matrix &loads) const {
   return half_response_of_turned(body_.turned(loads));
+}
+
+Vector BodyAtMu::half_response_to_load() const {
+  const AffineTerms &f = body_.model_.body.f;
+  Vector turned = Vector::Zero(body_.model_.primal_size());
+  if (has_load())
+    turned = body_.turned_f_ * affine_coefficients(f, body_.scene_.f, body_.scene_, mu_);
+  if (beta_.size() > 0)
+    turned += body_.turned_springs_ *
+              spring_coefficients(body_.model_, body_.scene_, mu_).cwiseProduct(beta_);
+  return half_response_of_turned(turned);
+}
+
+Matrix BodyAtMu::half_response_to_springs() const {
+  return half_response_of_turned(body_.turned_springs_);
 }
 
 Vector BodyAtMu::transposed_half_response(const Vector &half) const {

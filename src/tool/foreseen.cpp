@@ -82,7 +82,7 @@ double joining(const OfflineOptions &options, const RunSizes &size, double sampl
 }
 
 double snapshot_seconds(const Scene &scene, const RunSizes &size, double samples) {
-  const bool each = !constant_stiffness(scene) && !size.eliminated && has_multipliers(scene);
+  const bool each = !constant_stiffness(scene) && !size.eliminated;
   return std::ceil(samples * size.group / size.ranks) * factor_entries(scene, size.dofs) *
          (size.solves * solve_seconds + (each ? factor_seconds : 0));
 }
@@ -135,7 +135,8 @@ RunSizes sizes_of(MPI_Comm world, const Problem &problem, const HfOptions &optio
   size.contact = problem.trace().size;
   size.multipliers = static_cast<double>(problem.dual_size());
   size.solves = newton_solves;
-  if (!has_multipliers(problem.scene())) return size;
+  size.eliminated = !has_multipliers(problem.scene());
+  if (size.eliminated) return size;
   const ContactCost cost = contact_cost(problem, options.samples);
   size.eliminated = eliminates(problem, options);
   size.solves = size.eliminated ? cost.eliminated : cost.condensed;
@@ -171,8 +172,7 @@ Foresight foresee(const OfflineOptions &options, const std::vector<Mu> &training
   all[stage::mesh.text] = {mesh, mesh, mesh_seconds * n};
   const bool multigrid = size.eliminated && scene.components == 1;
   each_rank(stage::snapshots,
-            factor * (multigrid ? 0.5 : 1) / size.group +
-                (size.eliminated || !has_multipliers(scene) ? 0 : 2 * c * c),
+            factor * (multigrid ? 0.5 : 1) / size.group + (size.eliminated ? 0 : 2 * c * c),
             snapshot_seconds(scene, size, samples));
   each_rank(stage::distributed_mesh, mesh_bytes / of_number * n);
   each_rank(stage::interpolation, 2 * ((of_a * entries / 2 + of_f * n) / ranks + of_b));

@@ -50,8 +50,9 @@ using Kernel = void(const FullMu &mu, const Cell &cell, double *values); ///< se
 /// A force per length or area at a point x of the mapped boundary, n its unit normal outwards.
 using Traction = Point(const FullMu &mu, const Point &x, const Point &n);
 
-/// Values in those of fields at a point (core/formula.hpp).
-using FieldValues = void(const FullMu &mu, const double *fields, double *results);
+/// Values in those of fields (core/formula.hpp) at so many points, both column by column.
+using FieldValues = void(const FullMu &mu, const double *fields, std::size_t count,
+                         double *results);
 
 using AnyMaker = std::variant<Maker<NumberMap>, Maker<Coefficient>, Maker<Check>, Maker<PointValue>,
                               Maker<PointMap>, Maker<Surface>, Maker<Material>, Maker<Kernel>,

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 namespace rbvi {
 
@@ -21,67 +22,105 @@ class OutputLines {
 public:
   OutputLines(const OutputForm &form, const FullMu &mu) : form_(form), mu_(mu) {}
 
-  /// Adds a line, s in [0, 1]: fields(s) along it; weight(fields) is what its measure is weighted
-  /// by.
-  template <class Fields, class Weight> void add(const Fields &fields, const Weight &weight) {
-    parts(fields, [&](double from, double to) {
-      for (const auto &[s, share] : gauss) {
-        const OutputFields at = fields(from + (to - from) * s);
-        const double weighted = (to - from) * share * weight(at);
-        sums_.measure += weighted;
-        sums_.integral += weighted * value(at)[0];
-      }
-      for (const double s : {from, (from + to) / 2, to}) {
-        const double found = value(fields(s))[0];
-        sums_.least = std::min(sums_.least, found);
-        sums_.largest = std::max(sums_.largest, found);
-      }
+  /// Adds so many lines, s in [0, 1]: fields(line, s) along each; weight(line, fields) is what its
+  /// measure is weighted by.
+  template <class Fields, class Weight>
+  void add(std::size_t lines, const Fields &fields, const Weight &weight) {
+    find_parts(lines, fields);
+    std::vector<double> weights(places().size() * parts_.size());
+    evaluate(weights.size(), [&](std::size_t i) {
+      const auto &[line, from, to] = parts_[i / places().size()];
+      const auto &[s, share] = places()[i % places().size()];
+      const OutputFields at = fields(line, from + (to - from) * s);
+      weights[i] = (to - from) * share * weight(line, at);
+      return at;
     });
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      sums_.measure += weights[i];
+      sums_.integral += weights[i] * results_[i];
+      sums_.least = std::min(sums_.least, results_[i]);
+      sums_.largest = std::max(sums_.largest, results_[i]);
+    }
   }
 
+  /// The measure and the integral, or of a maximum and a minimum these.
   const OutputSums &sums() const { return sums_; }
 
-private:
-  struct GaussPoint {
+  struct Place {
     double s, weight;
   };
-  /// Exact to degree 5.
-  static constexpr double away = 0.38729833462074168852; // sqrt(0.15)
-  static constexpr std::array<GaussPoint, 3> gauss{
-      {{0.5 - away, 5.0 / 18}, {0.5, 8.0 / 18}, {0.5 + away, 5.0 / 18}}};
-
-  /// Value and condition.
-  std::array<double, 2> value(const OutputFields &fields) const {
-    std::array<double, 2> result{0, 1};
-    form_.values(mu_, fields.data(), result.data());
-    return result;
+  /// Where a line is asked: of a maximum and a minimum at ends and middle, else at Gauss points.
+  const std::array<Place, 3> &places() const {
+    const bool extreme = form_.kind == OutputForm::Kind::max || form_.kind == OutputForm::Kind::min;
+    return extreme ? ends : gauss;
   }
 
-  /// Calls use(from, to) for the parts on which the condition holds.
-  template <class Fields, class Use> void parts(const Fields &fields, const Use &use) const {
-    if (!form_.conditional) return use(0.0, 1.0);
-    constexpr int samples = 8; // crossings closer to each other than that are not seen
-    const auto holds = [&](double s) { return value(fields(s))[1] != 0; };
-    bool held = holds(0);
-    double from = 0;
-    for (int k = 1; k <= samples; ++k) {
-      double low = double(k - 1) / samples, high = double(k) / samples;
-      if (holds(high) == held) continue;
-      for (int step = 0; step < 50; ++step) {
-        const double middle = (low + high) / 2;
-        (holds(middle) == held ? low : high) = middle;
-      }
-      const double crossing = (low + high) / 2;
-      if (held) use(from, crossing);
-      from = crossing;
-      held = !held;
+private:
+  /// Exact to degree 5.
+  static constexpr double away = 0.38729833462074168852; // sqrt(0.15)
+  static constexpr std::array<Place, 3> gauss{
+      {{0.5 - away, 5.0 / 18}, {0.5, 8.0 / 18}, {0.5 + away, 5.0 / 18}}},
+      ends{{{0, 0}, {0.5, 0}, {1, 0}}};
+
+  /// Of a line: where the condition holds.
+  struct Part {
+    std::size_t line;
+    double from, to;
+  };
+
+  /// Into results_: the values at so many points, and behind them the conditions.
+  template <class At> void evaluate(std::size_t count, const At &fields_at) {
+    columns_.resize(field::count * count);
+    results_.resize(2 * count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const OutputFields fields = fields_at(i);
+      for (std::size_t c = 0; c < fields.size(); ++c)
+        columns_[c * count + i] = fields[c];
     }
-    if (held) use(from, 1.0);
+    if (count > 0) form_.values(mu_, columns_.data(), count, results_.data());
+  }
+
+  template <class Fields> void find_parts(std::size_t lines, const Fields &fields) {
+    parts_.clear();
+    if (!form_.conditional)
+      for (std::size_t line = 0; line < lines; ++line)
+        parts_.push_back({line, 0, 1});
+    if (!form_.conditional) return;
+    constexpr std::size_t samples = 8; // crossings closer to each other than that are not seen
+    evaluate((samples + 1) * lines, [&](std::size_t i) {
+      return fields(i / (samples + 1), double(i % (samples + 1)) / samples);
+    });
+    for (std::size_t line = 0; line < lines; ++line) {
+      const double *holds = &results_[(samples + 1) * (lines + line)];
+      double from = 0;
+      for (std::size_t k = 1; k <= samples; ++k) {
+        const bool held = holds[k - 1] != 0;
+        if ((holds[k] != 0) == held) continue;
+        const double crossing = crossing_between(double(k - 1) / samples, double(k) / samples, held,
+                                                 [&](double s) { return fields(line, s); });
+        if (held) parts_.push_back({line, from, crossing});
+        from = crossing;
+      }
+      if (holds[samples] != 0) parts_.push_back({line, from, 1});
+    }
+  }
+
+  template <class Fields>
+  double crossing_between(double low, double high, bool held, const Fields &fields) const {
+    for (int step = 0; step < 50; ++step) {
+      const double middle = (low + high) / 2;
+      std::array<double, 2> value_and_condition;
+      form_.values(mu_, fields(middle).data(), 1, value_and_condition.data());
+      ((value_and_condition[1] != 0) == held ? low : high) = middle;
+    }
+    return (low + high) / 2;
   }
 
   const OutputForm &form_;
   const FullMu &mu_;
   OutputSums sums_;
+  std::vector<Part> parts_;
+  std::vector<double> columns_, results_; ///< of evaluate()
 };
 
 /// Of so many mirror images; not finite over nothing.

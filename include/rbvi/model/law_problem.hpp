@@ -11,9 +11,10 @@ namespace rbvi {
 
 /// At one mu; m multipliers.
 struct LawAtMu {
-  Vector q;    ///< m
-  Matrix b;    ///< m x n; where the law is one on fewer functions
-  Vector load; ///< half response to the load; empty without one
+  Vector q;        ///< m
+  Matrix b;        ///< m x n; where the law is one on fewer functions
+  Vector load;     ///< half response to the load; empty without one
+  Vector unloaded; ///< n: the displacement of no multipliers; likewise
   NodeLaws laws;
   Matrix by_beta{}; ///< of q by what springs of free bodies are relaxed at; empty without them
 };
@@ -58,9 +59,10 @@ private:
   std::optional<FullMu> mu_; ///< of the next ones
   LawAtMu law_;
   std::optional<FrictionSolver> friction_;
-  // Of springs of free bodies: their coefficients, half responses to them, q and load without them.
-  Vector theta_, q_, load_;
-  Matrix springs_;
+  // Of springs of free bodies: their coefficients, half responses and displacements to them, and
+  // what of the law there is without them.
+  Vector theta_, q_, load_, unloaded_;
+  Matrix springs_, motions_;
 };
 
 /// Where queries start: from what the training samples around mu predict (core/local_fit.hpp), or

@@ -44,6 +44,7 @@ private:
   Matrix a_, l_;        ///< A_1 and L, their lower triangles, where few functions change; or empty
   Matrix u_, along_;    ///< U, n x min(n, r); U^T L^-1 Q
   Matrix turned_b_;     ///< n x generators, of the terms of B side by side
+  Matrix turned_f_, turned_springs_; ///< of the terms of F; of the springs of free bodies
 };
 
 /// What mu makes of it: of one thread.
@@ -73,6 +74,8 @@ public:
   /// R^-1 of loads that were turned.
   Matrix half_response_of_turned(const Matrix &turned) const;
   Matrix half_response(const Matrix &loads) const;           ///< R^-1 loads, n x any number
+  Vector half_response_to_load() const;                      ///< R^-1 load()
+  Matrix half_response_to_springs() const;                   ///< n x k
   Vector transposed_half_response(const Vector &half) const; ///< R^-T half
   Vector response_of_prepared(const Vector &prepared) const; ///< A_N^-1 of the load
   Vector response(const Vector &load) const;                 ///< A_N^-1 load

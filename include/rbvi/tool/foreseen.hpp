@@ -11,9 +11,9 @@ struct RunSizes {
   double dofs = 0;                     ///< free ones
   double contact = 0, multipliers = 0; ///< contact dofs, dual dofs; 0: not known yet
   double solves = 0;                   ///< with factors of A, for a sample (contact_cost)
-  bool eliminated = false;             ///< contact, by multigrid or by factors
-  int ranks = 1, group = 1;            ///< of the run, of a solve
-  double before = 0, held = 0;         ///< bytes of a rank: before the mesh, and with it
+  bool eliminated = false;     ///< contact: no operator is condensed, as by Nitsche's method
+  int ranks = 1, group = 1;    ///< of the run, of a solve
+  double before = 0, held = 0; ///< bytes of a rank: before the mesh, and with it
 };
 
 /// Before the mesh is made. Collective on `world`.
