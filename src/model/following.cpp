@@ -52,7 +52,7 @@ NonlinearStart FollowingSolver::start(const FullMu &mu) const {
 ReducedAnswer FollowingSolver::solve(const FullMu &mu, Relaxed relaxed) {
   if (evaluated_.set_compliance(mu) && nodal_) nodal_->forget();
   at_mu_.set(mu, relaxed.beta);
-  Vector load; // half response to it
+  Vector load, unloaded; // half response to it, the displacement without contact
   Compliance &compliance = evaluated_.compliance();
   NonlinearContact problem{.compliance = compliance,
                            .free = Vector::Zero(compliance.size()),
@@ -61,7 +61,8 @@ ReducedAnswer FollowingSolver::solve(const FullMu &mu, Relaxed relaxed) {
                            .w_product = w_product_};
   if (at_mu_.has_load()) {
     load = at_mu_.half_response_to_load();
-    problem.free = model_.contact.trace * at_mu_.transposed_half_response(load);
+    unloaded = at_mu_.transposed_half_response(load);
+    problem.free = model_.contact.trace * unloaded;
   }
   NonlinearOptions options = steps_;
   if (!nodal_ && has_curvature(contact_) && !problem.laws.has_tangents() &&
@@ -82,7 +83,7 @@ ReducedAnswer FollowingSolver::solve(const FullMu &mu, Relaxed relaxed) {
   answer.reaction = std::move(found.reaction);
   answer.energy = 0.5 * (answer.reaction.dot(problem.free - found.state) - load.squaredNorm());
   answer.u = evaluated_.moved_by(at_mu_, answer.reaction);
-  if (load.size() > 0) answer.u += at_mu_.transposed_half_response(load);
+  if (unloaded.size() > 0) answer.u += unloaded;
   if (model_.body.springs.size() > 0) {
     const Matrix motions = at_mu_.free_motions();
     const Matrix held =

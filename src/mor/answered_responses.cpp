@@ -42,10 +42,10 @@ Matrix parts_at(const Problem &problem, const ReducedModel &model, QueryMethod &
 
 /// `part` of what the model answers at the training parameters, at corners and faces of the box and
 /// at random ones, a hundred at a time, to `take`, until it returns false for some of these: there
-/// was no more in them. Collective. Throws failure where the law has no answer at any of the first,
-/// or always new ones.
+/// was no more in them. False where the law has no answer at any of the first. Collective. Throws
+/// failure where there are always new ones.
 template <class Part, class Take>
-void take_answers(const Problem &problem, const ReducedModel &model, Index size, Part &&part,
+bool take_answers(const Problem &problem, const ReducedModel &model, Index size, Part &&part,
                   Take &&take) {
   std::vector<Mu> set;
   for (const auto &training : model.contact.law->starts_mu.colwise())
@@ -54,7 +54,7 @@ void take_answers(const Problem &problem, const ReducedModel &model, Index size,
   set.insert(set.end(), boundary.begin(), boundary.end());
   const auto solver = law_solver(model, problem.scene(), problem.contact());
   Matrix answers = parts_at(problem, model, *solver, set, size, part);
-  if (answers.isZero(0)) throw failure("the law of contact has no answer at any training mu");
+  if (answers.isZero(0)) return false;
   ParameterReader random(problem.scene().parameters,
                          "random:" + std::to_string(most_queries) + ":29");
   take(answers);
@@ -68,6 +68,7 @@ void take_answers(const Problem &problem, const ReducedModel &model, Index size,
                     " of them: use a smaller box, or -response_tolerance 0");
     answers = parts_at(problem, model, *solver, set, size, part);
   } while (take(answers));
+  return true;
 }
 
 } // namespace
@@ -130,11 +131,12 @@ int append_answered_responses(Problem &problem, const CondensedLoads &loads,
   const auto multipliers = [&](const ReducedAnswer &answer) {
     return !loads.units.empty() ? answer.reaction : Vector(answer.theta_b[0] * answer.lambda);
   };
-  take_answers(problem, model, size, multipliers, [&](const Matrix &answers) {
+  const bool answered = take_answers(problem, model, size, multipliers, [&](const Matrix &answers) {
     if (directions.left(answers) <= between * tolerance) return false; // infinite before the first
     directions.add(answers, not_taken * tolerance);
     return true;
   });
+  if (!answered) throw failure("the law of contact has no answer at any training mu");
   const Mu any(model.contact.law->starts_mu.col(0).begin(),
                model.contact.law->starts_mu.col(0).end());
   ResponseSolver body(problem.assemble(any).a, problem.trace(), "hf_");
@@ -152,6 +154,7 @@ Matrix relative_columns(const Matrix &columns, double &largest) {
   constexpr double small = 1e-2;
   const Eigen::RowVectorXd norms = columns.colwise().norm();
   largest = std::max(largest, norms.maxCoeff());
+  if (largest == 0) return columns;
   return columns * norms.cwiseMax(small * largest).cwiseInverse().asDiagonal();
 }
 
@@ -182,8 +185,11 @@ Matrix answered_displacements(const Problem &problem, const ReducedModel &model)
   };
   constexpr int most_times = 20; // of a hundred answers
   int times = 0;
+  const auto is_worth_it = [&] {
+    return 4 * space.columns().cols() < 3 * n && times <= most_times;
+  };
   double largest = 0, largest_load = 0;
-  take_answers(problem, model, loaded ? 2 * n : n, displacements, [&](const Matrix &answers) {
+  const auto take = [&](const Matrix &answers) {
     Matrix parts = relative_columns(answers.topRows(n), largest);
     if (loaded) {
       parts.conservativeResize(Eigen::NoChange, 2 * answers.cols());
@@ -193,9 +199,11 @@ Matrix answered_displacements(const Problem &problem, const ReducedModel &model)
     const Matrix rest = space.remainder(parts);
     if (rest.colwise().norm().maxCoeff() <= displacement_tolerance) return false;
     space.append(leading_vectors(rest, not_taken * displacement_tolerance), dependent);
-    return 4 * space.columns().cols() < 3 * n && ++times <= most_times;
-  });
-  return 4 * space.columns().cols() < 3 * n && times <= most_times ? space.columns() : Matrix();
+    ++times;
+    return is_worth_it();
+  };
+  const bool answered = take_answers(problem, model, loaded ? 2 * n : n, displacements, take);
+  return answered && is_worth_it() ? space.columns() : Matrix();
 }
 
 } // namespace rbvi

@@ -126,8 +126,9 @@ TEST(AnsweredResponses, TakeThePlaceOfLargeFields) {
   }
 }
 
-/// A wheel on a bottom that moves sideways, of two materials, whose hub is pressed by a body force.
-Scene pressed_wheel() {
+/// A wheel, its top held and its halves of two materials, pressed on a floor by a body force, or by
+/// the displacement of its top alone where it has no weight.
+Scene pressed_wheel(bool heavy) {
   const std::string text =
       "rbvi: 1\nphysics: plane_strain\nmesh: {built_in: annulus, edges: 24}\n"
       "parameters: {e: {range: [5, 20], default: 10}, n: {range: [0.2, 0.4], default: 0.3},\n"
@@ -137,7 +138,11 @@ Scene pressed_wheel() {
       "loads: {weight: {at: all, force: [0.2*w, -w]}}\n"
       "contact: {floor: {at: bottom, against: {plane: {normal: [0, -1], position: 1}}, friction: "
       "{coulomb: 0.2}}}\n";
-  return make_scene(read_case(text, "case.yaml"), {});
+  Scene scene = make_scene(read_case(text, "case.yaml"), {});
+  if (heavy) return scene;
+  scene.parameters = free_only(scene.parameters, "e,n");
+  scene.parameters.all.back().value = 0;
+  return scene;
 }
 
 /// Where a displacement costs a factor of A_N, fewer functions have it as exactly: multipliers keep
@@ -145,7 +150,7 @@ Scene pressed_wheel() {
 TEST(AnsweredDisplacements, LeaveOutWhatNoAnswerNeeds) {
   Scene disk = make_scene("rigid_disk", {{"arc_edges", "60"}});
   disk.parameters = free_only(disk.parameters, "core_stiffness,poisson_ratio");
-  for (const Scene &scene : {disk, pressed_wheel()}) {
+  for (const Scene &scene : {disk, pressed_wheel(true)}) {
     Reduced r(scene, "random:25:2");
     ReduceOptions options;
     options.eim.tolerance = 1e-10;
@@ -162,6 +167,15 @@ TEST(AnsweredDisplacements, LeaveOutWhatNoAnswerNeeds) {
     EXPECT_LE(errors.u.maxCoeff(), 2e-6);
     EXPECT_LE(errors.lambda.maxCoeff(), 1e-7);
   }
+}
+
+/// Where contact reaches the edge of the nodes near it everywhere, nothing is answered before all
+/// nodes are kept; the load is zero.
+TEST(AnsweredDisplacements, WaitForAModelThatAnswers) {
+  Reduced r(pressed_wheel(false), "random:25:2");
+  r.reduce({});
+  const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:3:3"));
+  EXPECT_LE(r.errors_at(unseen).u.maxCoeff(), 1e-5);
 }
 
 } // namespace

@@ -82,10 +82,11 @@ private:
 
   template <class Fields> void find_parts(std::size_t lines, const Fields &fields) {
     parts_.clear();
-    if (!form_.conditional)
+    if (!form_.conditional) {
       for (std::size_t line = 0; line < lines; ++line)
         parts_.push_back({line, 0, 1});
-    if (!form_.conditional) return;
+      return;
+    }
     constexpr std::size_t samples = 8; // crossings closer to each other than that are not seen
     evaluate((samples + 1) * lines, [&](std::size_t i) {
       return fields(i / (samples + 1), double(i % (samples + 1)) / samples);
