@@ -11,17 +11,18 @@
 namespace rbvi {
 
 MultiplierReduction reduction_of(const Scene &scene, MultiplierReduction chosen) {
+  if (!has_multipliers(scene)) return MultiplierReduction::none;
   if (chosen != MultiplierReduction::automatic) return chosen;
   return keeps_nodes(scene) ? MultiplierReduction::condensed : MultiplierReduction::cone;
 }
 
 bool keeps_law(MultiplierReduction reduction) {
-  return reduction >= MultiplierReduction::condensed;
+  return reduction == MultiplierReduction::condensed ||
+         reduction == MultiplierReduction::collocated;
 }
 
 void check_reduction(const Scene &scene, const ReduceOptions &options) {
   const MultiplierReduction reduction = reduction_of(scene, options.multipliers.reduction);
-  if (!has_multipliers(scene)) return;
   if (reduction == MultiplierReduction::cone && has_friction(scene))
     throw bad_input("-multiplier_reduction cone is for contact without friction: use condensed, "
                     "collocated");

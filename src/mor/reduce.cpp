@@ -374,7 +374,7 @@ Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const Red
   result.affine = timed(result.stages, stage::interpolation, [&] {
     return separate(problem, training, options.eim, rows_apart(problem.scene(), options));
   });
-  if (!has_multipliers(problem.scene())) {
+  if (options.multipliers.reduction == MultiplierReduction::none) {
     reduce_nitsche(problem, samples, options, result);
     check_answers(problem, result.model, result.stages);
   } else if (keeps_law(options.multipliers.reduction)) {

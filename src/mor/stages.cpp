@@ -230,16 +230,17 @@ StageTable reduction_stages(const Scene &of, const ReduceOptions &options, const
   StageTable rows{interpolation_row(scene, options, made)};
   if (scene.f.empty()) rows.push_back({StageName("load vector"), "the scene has no load", skipped});
   rows.push_back(pod_row(options, made));
-  if (!has_multipliers(scene)) {
+  const MultiplierReduction reduction = reduction_of(scene, options.multipliers.reduction);
+  if (reduction == MultiplierReduction::none) {
     add_curve_rows(options, made, rows);
-  } else if (keeps_law(reduction_of(scene, options.multipliers.reduction))) {
+  } else if (keeps_law(reduction)) {
     add_law_rows(scene, options, made, rows);
   } else {
     rows.push_back(cone_row(options, made));
     add_supremizer_rows(scene, options, made, rows);
     rows.push_back(sweep_of_supremizers_row(scene, options, made));
   }
-  if (has_multipliers(scene) && !has_friction(scene))
+  if (reduction != MultiplierReduction::none && !has_friction(scene))
     rows.push_back({StageName("tangential multipliers"), "the scene has no friction", skipped});
   rows.push_back({stage::projection, "the separated operators onto the bases"});
   rows.push_back({stage::self_check, self_check_text(made)});

@@ -1,13 +1,11 @@
 // HighFidelity with bodies that contact alone holds: what their springs are relaxed at is found
 // such that forces balance.
-#include "rbvi/solve/high_fidelity.hpp"
+#include "contact_method.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/method/balance.hpp"
 #include "rbvi/method/several_answers.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/solve/eliminated.hpp"
-#include "rbvi/solve/methods.hpp"
 
 namespace rbvi {
 
@@ -35,10 +33,10 @@ Matrix unresisted_motions(const Problem &problem, const Operators &op) {
   return unresisted_motions(op.laws, balanced_forces(problem, op).held);
 }
 
-MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, const Vector &slip) {
+MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, ContactRows rows,
+                                    const Vector &slip) {
   const std::vector<FreeBody> &bodies = problem_.free_bodies();
   const int dim = problem_.scene().dim;
-  last_.reset(); // what a solve that failed has left
   const Solved *near = nearest(mu);
   Operators all;
   collectively(problem_.comm(), [&] { problem_.assemble_contact(mu, all); });
@@ -55,16 +53,16 @@ MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, const Vec
   const double stiffness =
       lengths.norm() * spring_coefficients(bodies, problem_.scene(), op.mu).cwiseAbs().maxCoeff();
   MethodResult result;
+  std::optional<Solved> last; // of the springs before
   int iterations = 0;
   const Balance balance = find_balance(start, [&](const Vector &beta) {
     problem_.relax_springs(beta);
-    result = run(mu, op, slip);
+    result = run(mu, op, slip, last ? &*last : near, last.has_value());
     iterations += result.iterations;
-    last_ = solved(mu, result);
+    last = method_->kept(mu, result);
     const Vector forces = forces_on_motions(all.laws, held, terms, result.lambda);
     return SpringState{spring_lengths(bodies, result.free_u.get()), forces.maxCoeff() / stiffness};
   });
-  last_.reset();
   problem_.relax_springs(Vector::Zero(start.size()));
   if (balance.flies)
     throw failure(describe(bodies, dim, lu_solve(lengths, balance.excess)) +
@@ -77,7 +75,7 @@ MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, const Vec
                   "give them friction or displacements that hold them, or stiffnesses less far "
                   "apart");
   }
-  if (grids_ == nullptr) static_cast<ContactOperators &>(all) = op;
+  if (rows == ContactRows::all) static_cast<ContactOperators &>(all) = op;
   const Matrix loose = loose_motions(all.laws, problem_.held_by(all), result.lambda);
   if (loose.cols() > 0)
     throw failure(describe(bodies, dim, loose) +

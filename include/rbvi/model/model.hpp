@@ -121,10 +121,11 @@ struct CondensedOperator {
 
 /// What the multipliers are combined from.
 enum class MultiplierReduction {
-  automatic, ///< condensed where every interface keeps its nodes (ContactRecipe), else cone
-  cone,      ///< a cone, stable with supremizers; without friction
-  condensed, ///< every node: the law of contact and friction is exact, the body is reduced
-  collocated ///< a cone for lambda_n, modes for lambda_tau, the bound at collocation nodes (3.54)
+  automatic,  ///< condensed where every interface keeps its nodes (ContactRecipe), else cone
+  cone,       ///< a cone, stable with supremizers; without friction
+  condensed,  ///< every node: the law of contact and friction is exact, the body is reduced
+  collocated, ///< a cone for lambda_n, modes for lambda_tau, the bound at collocation nodes (3.54)
+  none        ///< Nitsche's method has no multipliers
 };
 
 /// "auto", "cone", "condensed", "collocated".
@@ -200,8 +201,8 @@ struct ContactModel {
   /// not known.
   Matrix trace;
   std::vector<int> trace_dofs; ///< contact dof of each row, rising; empty: all of them
-  /// Of a pair of spaces, R x samples: its own answers at the training parameters, zero where it has
-  /// none; queries start from their active sets. Empty: found when they are first asked for.
+  /// Of a pair of spaces, R x samples: its own answers at the training parameters, zero where it
+  /// has none; queries start from their active sets. Empty: found when they are first asked for.
   Matrix starts;
   std::optional<NodalLaw> law;
   std::optional<NitscheModel> nitsche;

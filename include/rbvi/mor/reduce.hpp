@@ -69,7 +69,7 @@ struct ReducedBases {
   double infsup_tolerance = 0; ///< of the greedy, where ReduceOptions asks for it
 };
 
-/// What `automatic` means for a scene; else `chosen`.
+/// What `automatic` means for a scene, none by Nitsche's method; else `chosen`.
 MultiplierReduction reduction_of(const Scene &scene, MultiplierReduction chosen);
 /// Whether a reduction is one of the law at nodes (NodalLaw), not of a pair of spaces.
 bool keeps_law(MultiplierReduction reduction);

@@ -88,9 +88,8 @@ struct HfSolution : Answer {
 Matrix unresisted_motions(const Problem &problem, const Operators &op);
 
 struct MethodResult;
-class FactoredBody;
-class GridSequence;
-class ScaledPart;
+struct Solved;
+class ContactMethod;
 
 /// Solves at many mu; remembers the active sets it has met (with friction the multipliers) and
 /// starts from those of the nearest mu, the first time from where a few accelerated Uzawa steps see
@@ -112,47 +111,19 @@ public:
   /// its share. Does nothing where solves do not keep columns. Collective on all groups.
   void share_columns(const Groups &groups, const std::vector<Mu> &set);
   /// Forgets earlier solutions: the next solve starts cold.
-  void forget() { solved_.clear(); }
+  void forget();
 
 private:
-  struct Solved {
-    Mu mu;
-    Vector start;  ///< as FrictionResult::start
-    Handle<Vec> u; ///< Nitsche's method, as the pressures
-    Matrix pressures;
-    Vector state{}; ///< where contact follows the displacement
-    Vector beta{};  ///< HfSolution::beta
-  };
-  Solved solved(const Mu &mu, const MethodResult &result) const;
   const Solved *nearest(const Mu &mu) const;
-  Vector nearest_start(const Mu &mu, const Operators &op);
-  /// All columns of the compliance at once, where that takes less than those that are needed.
-  void complete_compliance();
-  MethodResult run(const Mu &mu, const Operators &op, const Vector &slip);
-  MethodResult run_free(const Mu &mu, const Operators &op, const Vector &slip);
-  MethodResult run_following(const Mu &mu, const Operators &op, const Vector &slip);
-  MethodResult run_condensed(const Mu &mu, const Operators &op, const Vector &slip);
-  std::optional<MethodResult> run_eliminated(const Mu &mu, const Operators &op, const Vector &slip,
-                                             std::string &complaint);
-  MethodResult run_eliminated_or_condensed(const Mu &mu, const Operators &op, const Vector &slip);
-  MethodResult run_over_ranks(const Operators &op, const Vector &slip);
-  void measure_over_ranks(const Operators &op, const DistributedContact &contact,
-                          const Vector &slip, MethodResult &result);
-  Matrix predicted_pressures(const Mu &mu) const;
-  HfSolution solve_nitsche(const Mu &mu, const Operators &op);
+  MethodResult run(const Mu &mu, const Operators &op, const Vector &slip, const Solved *near,
+                   bool continues);
+  MethodResult run_free(const Mu &mu, const Operators &op, ContactRows rows, const Vector &slip);
 
   Problem &problem_;
   HfOptions options_;
   Handle<KSP> ksp_;
-  std::unique_ptr<NitscheSolver> nitsche_;
-  std::unique_ptr<GridSequence> grids_; ///< active sets by elimination
-  std::unique_ptr<FactoredBody> body_;  ///< active sets on the multipliers
-  bool part_fits_ = false;
-  std::unique_ptr<ScaledPart> part_; ///< where a part of it is scaled, from the second mu on
-  Handle<Mat> w_product_;            ///< over the ranks, where a method wants it
+  std::unique_ptr<ContactMethod> method_;
   std::vector<Solved> solved_;
-  std::optional<Solved> last_; ///< where springs of free bodies change, of those before
-  int solves_ = 0;
 };
 
 } // namespace rbvi

@@ -17,7 +17,8 @@ const std::vector<std::string> &hf_contact_names();
 /// measured on it.
 struct MethodResult : HfSolution {
   Handle<Vec> free_u;
-  Vector w; ///< of solve_active_set: H lambda + q
+  Vector w;         ///< of solve_active_set: H lambda + q
+  Matrix pressures; ///< of Nitsche's method: NitscheSolution::pressures
   bool converged = false;
 };
 

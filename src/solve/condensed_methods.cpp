@@ -1,0 +1,196 @@
+// Active sets on the multipliers: by columns of the compliance of the contact dofs.
+#include "contact_method.hpp"
+
+#include "rbvi/contact/history.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/method/several_answers.hpp"
+#include "rbvi/solve/contact_cost.hpp"
+#include "rbvi/solve/scaled_part.hpp"
+#include "rbvi/solve/vectors.hpp"
+
+#include <algorithm>
+#include <set>
+#include <tuple>
+
+namespace rbvi {
+
+namespace {
+
+constexpr double refined_above = 1e-11;
+constexpr int most_refinements = 2;
+
+/// The history of friction that a solution leaves, all rows of B on this rank.
+Vector slip_left(const Problem &problem, const Operators &op, const Vector &before,
+                 const MethodResult &result) {
+  if (tangential_size(problem.contact()) == 0) return {};
+  return slip_of(problem.contact(), op.b * restrict_to(problem.trace(), result.free_u.get()) - op.g,
+                 op.weights, before);
+}
+
+/// Where a few dozen accelerated Uzawa steps see contact: far cheaper than the columns of all
+/// nodes.
+Vector rough_start(KSP ksp, Problem &problem, const Operators &op) {
+  const UzawaOptions rough{.tolerance = 1e-3, .max_iterations = 100, .accelerated = true};
+  const DualLayout &layout = problem.dual_layout();
+  const DistributedContact contact = distribute(layout, op, op.laws);
+  const Handle<Mat> w = distribute(layout, problem.w_product());
+  MethodResult found = solve_uzawa(ksp, layout, contact, op.f, w.get(), rough);
+  return found.lambda.allFinite() ? found.lambda : Vector(); // not finite: B is zero
+}
+
+class OnColumns : public ContactMethod {
+public:
+  OnColumns(Problem &problem, const HfOptions &options, KSP ksp, ColumnsLast last)
+      : problem_(problem), options_(options), ksp_(ksp), body_(ksp, problem.trace(), last) {}
+  ContactRows begin(const Vector &) override { return ContactRows::all; }
+  void set(const Operators &op) override {
+    set_operator(ksp_, op.a);
+    body_.set(op.a);
+    const double half = problem_.trace().size / 2.0; // of the columns, as contact_cost has it
+    if (body_.keeps_columns() && body_.count() == 0 && takes_complement(problem_, half))
+      body_.require_all();
+  }
+  void share_columns(const Groups &groups, const std::vector<Mu> &set) override;
+
+protected:
+  Problem &problem_;
+  const HfOptions &options_;
+  KSP ksp_;
+  FactoredBody body_;
+};
+
+void OnColumns::share_columns(const Groups &groups, const std::vector<Mu> &set) {
+  if (!body_.keeps_columns() || groups.count() == 1 || std::ssize(set) < 2 * groups.count() ||
+      !problem_.scene().f.empty())
+    return;
+  std::set<Index> dofs;
+  Operators rows;
+  Mat a = nullptr;
+  for (const Mu &mu : set) {
+    try {
+      problem_.assemble_contact(mu, rows);
+      if (a == nullptr) a = problem_.assemble(mu).a;
+    } catch (const Error &) {
+      continue; // of every group; the sample will say why
+    }
+    for (Index i = 0; i < rows.g.size(); ++i)
+      for (SparseMatrix::InnerIterator entry(rows.b, i); entry && rows.g[i] < 0; ++entry)
+        dofs.insert(entry.col());
+  }
+  if (a == nullptr) return;
+  set_operator(ksp_, a);
+  body_.set(a);
+  if (takes_complement(problem_, static_cast<double>(dofs.size()) / groups.count()))
+    return body_.require_all(&groups);
+  body_.require({dofs.begin(), dofs.end()}, groups);
+}
+
+class Condensed : public OnColumns {
+public:
+  using OnColumns::OnColumns;
+  ContactRows begin(const Vector &slip) override {
+    if (part_fits_ && !part_ && solves_ > 0) part_ = std::make_unique<ScaledPart>(problem_);
+    ++solves_;
+    return OnColumns::begin(slip);
+  }
+  MethodResult solve(const ContactTask &task) override;
+  void check(const MethodResult &result) const override {
+    require_residual(result, largest_residual);
+  }
+
+private:
+  Vector start_of(const ContactTask &task) {
+    if (task.near != nullptr) return task.near->start;
+    const bool columns_are_kept = part_ || body_.count() > 0;
+    return columns_are_kept ? Vector() : rough_start(ksp_, problem_, task.op);
+  }
+
+  const bool part_fits_ = ScaledPart::fits(problem_.scene());
+  std::unique_ptr<ScaledPart> part_; ///< where a part of A is scaled, from the second mu on
+  int solves_ = 0;
+};
+
+MethodResult Condensed::solve(const ContactTask &task) {
+  const Operators &op = task.op;
+  if (part_) part_->set(op);
+  FullBody &body = part_ ? static_cast<FullBody &>(*part_) : body_;
+  ActiveSetOptions options{!task.continues, options_.looks_for_others, {}};
+  MethodResult result = solve_active_set(body, op, start_of(task), options);
+  if (!result.converged) return result;
+  const auto residual = [&] {
+    return kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda);
+  };
+  result.kkt = residual();
+  // H has the round-off of A^-1, which iterative refinement takes out.
+  options = {false, false, Vector::Zero(op.g.size())};
+  for (int pass = 0; pass < most_refinements && !(result.kkt.largest() <= refined_above); ++pass) {
+    options.correction +=
+        op.g - op.b * restrict_to(problem_.trace(), result.free_u.get()) - result.w;
+    const Vector from = result.start.size() > 0 ? result.start : result.lambda;
+    const auto [to_other, iterations, columns] =
+        std::tuple{result.to_other, result.iterations, result.columns};
+    result = solve_active_set(body, op, from, options);
+    if (!result.converged) return result;
+    result.to_other = std::max(to_other, result.to_other);
+    result.iterations += iterations;
+    result.columns += columns;
+    result.kkt = residual();
+  }
+  measure(problem_, op, op.weights, result);
+  result.slip = slip_left(problem_, op, task.slip, result);
+  return result;
+}
+
+/// Contact that follows the displacement.
+class Following : public OnColumns {
+public:
+  using OnColumns::OnColumns;
+  MethodResult solve(const ContactTask &task) override {
+    Operators op = task.op;
+    NonlinearStart start{undeformed(problem_.contact(), problem_.scene(), op.mu), {}};
+    if (task.near != nullptr && !bounds_follow_pressure(op.laws))
+      start = {task.near->state, task.near->start};
+    auto [result, steps] =
+        solve_following(body_, problem_, op, task.slip, start, options_.nonlinear);
+    result.kkt = kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda);
+    measure(problem_, op, op.weights, result);
+    result.load_steps = result.outputs.load_steps = steps.load_steps;
+    result.slip = slip_left(problem_, op, task.slip, result);
+    result.contraction = result.outputs.contraction = steps.rate;
+    result.states = std::move(steps.iterates);
+    result.states.push_back(std::move(steps.state));
+    return std::move(result);
+  }
+  void check(const MethodResult &result) const override {
+    require_residual(result, std::max(largest_residual, 10 * options_.nonlinear.tolerance));
+  }
+};
+
+} // namespace
+
+std::unique_ptr<ContactMethod> make_contact_method(Problem &problem, const HfOptions &options,
+                                                   KSP ksp) {
+  const bool by_sets = options.method == HfMethod::active_set,
+             follows = follows_state(problem.contact());
+  if (follows && !by_sets)
+    throw bad_input("-hf_method " + hf_method_names()[static_cast<std::size_t>(options.method)] +
+                    " is for small deformations: leave it out, or use -kinematics small");
+  if (options.method == HfMethod::vi) require_bounds_at_nodes(problem.scene());
+  if (!has_multipliers(problem.scene())) return make_nitsche_method(problem, options);
+  const ColumnsLast changing =
+      follows || !problem.free_bodies().empty() ? ColumnsLast::for_one_mu : ColumnsLast::for_one_b;
+  const ColumnsLast last = constant_stiffness(problem.scene()) ? ColumnsLast::for_all_mu : changing;
+  if (follows) {
+    if (options.contact == HfContact::eliminated)
+      throw bad_input("-hf_contact eliminated is for small deformations: leave it out, or use "
+                      "-kinematics small");
+    return std::make_unique<Following>(problem, options, ksp, last);
+  }
+  if (!by_sets) return make_distributed_method(problem, options, ksp);
+  if (eliminates(problem, options))
+    return make_elimination(problem, options,
+                            std::make_unique<Condensed>(problem, options, ksp, changing));
+  return std::make_unique<Condensed>(problem, options, ksp, last);
+}
+
+} // namespace rbvi
