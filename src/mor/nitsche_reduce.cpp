@@ -41,6 +41,7 @@ void add_histories(const CurveReport &curve,
 void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
                     const ReduceOptions &options, Reduction &result) {
   add_modes(problem, samples, options.pod, result.bases, result.stages);
+  result.bases.nodal_dual.resize(problem.dual_size(), 0);
   result.model = timed(result.stages, stage::projection,
                        [&] { return project(problem, samples, result.affine, result.bases); });
   const Stage stage(result.stages, stage::contact_curve);

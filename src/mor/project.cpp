@@ -157,9 +157,7 @@ ReducedModel start_model(const Problem &problem, const ReducedBases &bases) {
   model.body.modes = bases.modes;
   model.body.supremizers = bases.supremizers + bases.responses;
   model.body.online_enriched = bases.online_enriched;
-  model.contact.dual_basis = !has_multipliers(scene)       ? Matrix(problem.dual_size(), 0)
-                             : bases.nodal_dual.size() > 0 ? bases.nodal_dual
-                                                           : bases.cone.all();
+  model.contact.dual_basis = bases.nodal_dual.rows() > 0 ? bases.nodal_dual : bases.cone.all();
   model.contact.free_modes = static_cast<int>(bases.cone.modes.columns.cols());
   model.contact.generators = static_cast<int>(model.contact.dual_basis.cols());
   return model;
@@ -220,14 +218,15 @@ void project_snapshots(Problem &problem, const std::vector<Sample> &samples,
 void project_exact(Problem &problem, const std::vector<Sample> &samples,
                    const AffineOperators &affine, Mat basis, ReducedModel &model) {
   const Index n = model.primal_size();
+  StiffnessChange &change = model.body.a_change;
   std::vector<Mu> set;
   for (const int p : affine.a.snapshots)
     set.push_back(samples[p].mu);
   if (model.contact.generators > 0 && !model.contact.law && !model.body.online_enriched)
-    model.body.a_change = stiffness_change(problem, affine.a, set, basis);
-  model.body.a.reduced.setZero(n * (n + 1) / 2,
-                               model.body.a_change.rank() > 0 ? 1 : model.body.a.size());
-  if (model.body.a_change.rank() > 0) {
+    change = stiffness_change(problem, affine.a, set, basis);
+  const bool few = change.rank() > 0;
+  model.body.a.reduced.setZero(n * (n + 1) / 2, few ? 1 : model.body.a.size());
+  if (few) {
     problem.assemble(set.front());
     model.body.a.reduced.col(0) = project_stiffness(problem.a_terms().mapped.get(), basis);
   }

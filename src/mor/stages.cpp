@@ -42,7 +42,8 @@ bool has_mapped_terms(const Sum &sum) {
 
 StageRow interpolation_row(const Scene &scene, const ReduceOptions &options,
                            const Reduction *made) {
-  const bool apart = !separable_contact(scene), evaluated = apart && has_multipliers(scene);
+  const bool apart = !separable_contact(scene),
+             evaluated = apart && options.multipliers.reduction != MultiplierReduction::none;
   const bool a = has_mapped_terms(scene.a), f = has_mapped_terms(scene.f);
   const std::string assembled = evaluated ? "; B, G are assembled exactly online" : "";
   const std::string exact =
@@ -225,12 +226,14 @@ std::string self_check_text(const Reduction *made) {
 
 } // namespace
 
-StageTable reduction_stages(const Scene &of, const ReduceOptions &options, const Reduction *made) {
+StageTable reduction_stages(const Scene &of, const ReduceOptions &given, const Reduction *made) {
   const Scene scene = with_imposed_loads(of);
+  ReduceOptions options = given;
+  MultiplierReduction &reduction = options.multipliers.reduction;
+  reduction = reduction_of(scene, reduction);
   StageTable rows{interpolation_row(scene, options, made)};
   if (scene.f.empty()) rows.push_back({StageName("load vector"), "the scene has no load", skipped});
   rows.push_back(pod_row(options, made));
-  const MultiplierReduction reduction = reduction_of(scene, options.multipliers.reduction);
   if (reduction == MultiplierReduction::none) {
     add_curve_rows(options, made, rows);
   } else if (keeps_law(reduction)) {

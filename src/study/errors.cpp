@@ -23,34 +23,6 @@ double product(Mat v, Vec x, Vec y, Vec scratch) {
   return value;
 }
 
-/// C^T A C of a packed symmetric matrix, packed again.
-Vector congruence(const Eigen::Ref<const Vector> &packed, const Matrix &c) {
-  return pack(c.transpose() * (unpacked(packed, c.rows()) * c));
-}
-
-/// The reduced operators in the basis V C.
-ReducedModel rebased(const ReducedModel &model, const Matrix &c, int modes) {
-  ReducedModel result = model;
-  const Index k = c.cols(), r = model.contact.generators;
-  result.body.modes = modes;
-  result.body.supremizers = static_cast<int>(k) - modes;
-  result.body.a.reduced.resize(k * (k + 1) / 2, model.body.a.reduced.cols());
-  for (Index q = 0; q < model.body.a.reduced.cols(); ++q)
-    result.body.a.reduced.col(q) = congruence(model.body.a.reduced.col(q), c);
-  if (model.body.a_change.rank() > 0)
-    result.body.a_change.range = c.transpose() * model.body.a_change.range;
-  result.contact.b.reduced.resize(r * k, model.contact.b.size());
-  for (Index q = 0; q < model.contact.b.size(); ++q)
-    result.contact.b.reduced.col(q) =
-        (model.contact.b.reduced.col(q).reshaped(r, c.rows()) * c).eval().reshaped();
-  if (model.body.springs.size() > 0) result.body.springs = c.transpose() * model.body.springs;
-  result.body.f.reduced = c.transpose() * model.body.f.reduced;
-  result.contact.trace = model.contact.trace * c;
-  if (model.outputs.basis.size() > 0) result.outputs.basis = model.outputs.basis * c;
-  result.fields.basis.resize(0, 0);
-  return result;
-}
-
 /// 1 at the rows of normal multipliers, 0 at those of tangential ones.
 Vector normal_rows(const Contact &contact) {
   Vector rows(contact.dual_size());

@@ -58,16 +58,14 @@ int axes_of(const Scene &scene) {
 }
 
 bool condenses(const OfflineOptions &options) {
-  return has_multipliers(options.scene) &&
-         reduction_of(options.scene, options.reduce.multipliers.reduction) ==
-             MultiplierReduction::condensed;
+  return options.reduce.multipliers.reduction == MultiplierReduction::condensed;
 }
 
 /// Functions that join the modes: responses, or supremizers of as many generators.
 double joining(const OfflineOptions &options, const RunSizes &size, double samples) {
   const Scene &scene = options.scene;
   const ReduceOptions &reduce = options.reduce;
-  if (!has_multipliers(scene)) return 0;
+  if (reduce.multipliers.reduction == MultiplierReduction::none) return 0;
   if (condenses(options)) {
     if (reduce.condensed.responses == 0) return 0;
     if (axes_of(scene) > 0)

@@ -280,6 +280,8 @@ ReducedModel read_model(const std::filesystem::path &path, const Registry &regis
 /// the first r generators. Errors measured for other sizes are dropped. Throws bad_input for sizes
 /// that the model does not have.
 ReducedModel leading(const ReducedModel &model, int n, int r);
+/// The model on the functions V C, C n x k, `modes` of them modes; without its fields.
+ReducedModel rebased(const ReducedModel &model, const Matrix &c, int modes);
 
 /// theta of the springs of each free motion.
 Vector spring_coefficients(const ReducedModel &model, const Scene &scene, const FullMu &mu);
