@@ -103,11 +103,9 @@ private:
   ActiveSets sets_from(const Vector &start) {
     ActiveSets sets = predicted_sets(laws_, start);
     h_.require(sets.support(laws_));
-    set_curvature(diagonal(), laws_, start, sets);
+    set_curvature(h_.diagonal(), laws_, start, sets);
     return sets;
   }
-
-  Vector diagonal() const { return diagonal_of(h_, q_.size()); }
 
   /// The columns of the support of x, of nodes that touch, and of thresholds that hold everywhere.
   void prepare(const Laws &laws, const Vector &x) {
@@ -119,7 +117,7 @@ private:
 
   Outcome newton(const Laws &laws, State &point, int patience = usual_patience) {
     const ActiveSets sets = contact_sets(laws, point.x);
-    Verdict verdict = judge(diagonal(), laws, point, sets, options_.tolerance);
+    Verdict verdict = judge(h_.diagonal(), laws, point, sets, options_.tolerance);
     keep(laws, point, sets, verdict);
     return newton_from(laws, std::move(verdict.next), point, patience);
   }
@@ -148,10 +146,10 @@ private:
       const Solved solved = solve(laws.dim == 2 ? 0 : 1);
       if (solved == Solved::indefinite) return Outcome::indefinite;
       if (solved == Solved::singular) return Outcome::cycles;
-      Verdict verdict = judge(diagonal(), laws, point, sets, options_.tolerance);
+      Verdict verdict = judge(h_.diagonal(), laws, point, sets, options_.tolerance);
       if (laws.dim == 2 && !verdict.changed) { // it may be the last one
         solve(1);
-        verdict = judge(diagonal(), laws, point, sets, options_.tolerance);
+        verdict = judge(h_.diagonal(), laws, point, sets, options_.tolerance);
       }
       keep(laws, point, sets, verdict);
       if (settled(verdict, policy.least())) return Outcome::converged;
@@ -252,9 +250,9 @@ private:
     if (!result.converged || kept_.key != best_sets_.key()) kept_.system.reset();
     if (!result.converged) {
       best_ = evaluate(h_, q_, std::move(best_.x));
-      result.residual = judge(diagonal(), laws_, best_, best_sets_, options_.tolerance).residual;
+      result.residual = judge(h_.diagonal(), laws_, best_, best_sets_, options_.tolerance).residual;
     }
-    result.start = smooth_start(diagonal(), laws_, best_);
+    result.start = smooth_start(h_.diagonal(), laws_, best_);
     result.x = std::move(best_.x);
     result.w = std::move(best_.w);
     describe(result, laws_, best_sets_);

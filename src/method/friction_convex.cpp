@@ -17,7 +17,7 @@ void sweep(const LazyColumns &h, const Laws &frozen, State &point) {
   const Index count = frozen.dim - 1;
   for (Index i = 0; i < frozen.nodes; ++i) {
     if (h.has(i)) {
-      const double change = std::max(0.0, point.x[i] - point.w[i] / h.diagonal(i)) - point.x[i];
+      const double change = std::max(0.0, point.x[i] - point.w[i] / h.diagonal()[i]) - point.x[i];
       point.x[i] += change;
       if (change != 0) point.w += change * h.column(i);
     }
@@ -25,7 +25,7 @@ void sweep(const LazyColumns &h, const Laws &frozen, State &point) {
     if (frozen.threshold[i] == 0 || !h.has(t)) continue;
     double curvature = 0;
     for (Index k = 0; k < count; ++k)
-      curvature += h.diagonal(t + k);
+      curvature += h.diagonal()[t + k];
     const Vector old = point.x.segment(t, count);
     Vector next = old - point.w.segment(t, count) / curvature;
     const double size = next.norm();
@@ -107,7 +107,7 @@ bool minimise(LazyColumns &h, const Vector &q, const Laws &frozen, double tolera
               State &point) {
   ActiveSets sets = contact_sets(frozen, point.x);
   for (;;) {
-    const Vector diagonal = diagonal_of(h, q.size());
+    const Vector &diagonal = h.diagonal();
     const Verdict verdict = judge(diagonal, frozen, point, sets, tolerance);
     if (verdict.residual <= tolerance || steps <= 0) return true;
     --steps;

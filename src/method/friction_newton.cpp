@@ -208,10 +208,6 @@ void set_curvature(const Vector &diagonal, const Laws &laws, const Vector &y, Ac
     }
 }
 
-Vector diagonal_of(const LazyColumns &h, Index size) {
-  return Vector::NullaryExpr(size, [&](Index j) { return h.has(j) ? h.diagonal(j) : 0; });
-}
-
 std::vector<Unknown> unknowns(const Laws &laws, const ActiveSets &sets) {
   std::vector<Unknown> result;
   result.reserve(laws.nodes * laws.dim);
@@ -283,14 +279,14 @@ Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, cons
 
 System::System(const LazyColumns &h, const Laws &laws, ActiveSets sets) : sets_(std::move(sets)) {
   for (const Index j : sets_.support(laws))
-    if (!(h.diagonal(j) > 0)) {
+    if (!(h.diagonal()[j] > 0)) {
       solved_ = Solved::indefinite;
       return;
     }
   list_ = unknowns(laws, sets_);
   symmetric_ = std::ranges::all_of(list_, [](const Unknown &u) { return u.slope == 0; });
   if (list_.empty()) return;
-  const Vector diagonal = diagonal_of(h, laws.nodes * laws.dim);
+  const Vector &diagonal = h.diagonal();
   unit_ = Vector::NullaryExpr(std::ssize(list_), [&](Index k) {
     const Unknown &u = list_[k];
     return 1 / std::sqrt(u.first < laws.nodes ? diagonal[u.first]

@@ -81,8 +81,6 @@ Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, cons
               double tolerance, double largest);
 Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, const ActiveSets &sets,
               double tolerance);
-/// H_jj of the columns that are there, 0 elsewhere.
-Vector diagonal_of(const LazyColumns &h, Index size);
 /// The sets to judge a point by that no step gave.
 ActiveSets contact_sets(const Laws &laws, const Vector &x);
 /// The sets that y = x - w / H_jj tells, but for their curvature.

@@ -50,7 +50,7 @@ FrictionResult without_friction(LazyColumns &h, const Vector &q, const Laws &law
   x.head(nodes) = normal.x;
   State point = evaluate(h, q, std::move(x));
   result.residual = normal_residual(normal.x, point.w, point.terms);
-  result.start = smooth_start(diagonal_of(h, q.size()), laws, point);
+  result.start = smooth_start(h.diagonal(), laws, point);
   result.x = std::move(point.x);
   result.w = std::move(point.w);
   describe(result, laws, ActiveSets(nodes, laws.dim));

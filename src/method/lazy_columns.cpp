@@ -20,8 +20,10 @@ void LazyColumns::require(const std::vector<Index> &which) {
     h_.conservativeResize(Eigen::NoChange,
                           std::min(h_.rows(), std::max(count_ + count, 2 * h_.cols())));
   h_.middleCols(count_, count) = received;
-  for (const Index i : fresh)
+  for (const Index i : fresh) {
     slot_[i] = count_++;
+    diagonal_[i] = h_(i, slot_[i]);
+  }
 }
 
 Matrix LazyColumns::block(const std::vector<Index> &active) const {

@@ -27,8 +27,14 @@ double distance_to_other_answer(FrictionSolver &solver, const FrictionResult &fo
     const FrictionResult other = solver.another(start, by_rule);
     if (other.converged) farthest = std::max(farthest, distance_of_answers(found.x, other.x));
   };
-  look({}, false);
   if (!solver.by_rule()) look(found.start, true);
+  Vector reversed = found.start;
+  for (Index i = 0; i < laws.nodes(); ++i) {
+    if (!laws.has_tangent(i)) continue;
+    reversed[laws.normal[i]] = std::abs(reversed[laws.normal[i]]);
+    reversed.segment(laws.tangent[i], laws.tangents) *= -2;
+  }
+  look(reversed, false);
   for (const double slip : {0.0, 1.0, -1.0}) {
     Vector start = found.start;
     for (Index i = 0; i < laws.nodes(); ++i) {

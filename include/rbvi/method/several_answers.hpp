@@ -59,9 +59,10 @@ private:
 double distance_of_answers(const Vector &x, const Vector &other);
 
 /// The distance of found.x, the last answer() of a problem, to the farthest other answer; 0: none
-/// was found. Looks from rest, by the rule where `found` is not the answer by it, and from the
-/// contact of `found` (of all nodes where it has none) with all of it stuck, or slipping one way or
-/// the other. Where bounds do not follow the pressure nothing is asked.
+/// was found. Looks by the rule where `found` is not the answer by it; from contact at every node
+/// with friction, its traction against that of `found`; and from the contact of `found` (of all
+/// nodes where it has none) with all of it stuck, or slipping one way or the other. Where bounds do
+/// not follow the pressure nothing is asked.
 double distance_to_other_answer(FrictionSolver &solver, const FrictionResult &found);
 
 } // namespace rbvi
