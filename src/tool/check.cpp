@@ -5,6 +5,7 @@
 #include "rbvi/core/validity.hpp"
 #include "rbvi/fem/check_scene.hpp"
 #include "rbvi/io/write_atomically.hpp"
+#include "rbvi/mesh/contact_curves.hpp"
 #include "rbvi/mesh/serial.hpp"
 #include "rbvi/mesh/surface.hpp"
 #include "rbvi/model/print.hpp"
@@ -15,6 +16,7 @@
 #include "rbvi/tool/commands.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <map>
@@ -76,6 +78,35 @@ void print_sum(const char *name, const Sum &sum, const ParameterSpace &space) {
                 count == 1 ? "" : (" (" + std::to_string(count) + " terms)").c_str());
 }
 
+/// The largest distance of an edge of a piece from the arc through its vertices and the next ones;
+/// corners apart.
+double off_its_arc(const SerialMesh &mesh, const CurvePiece &piece) {
+  constexpr double straight = 1e-3; // radians
+  double away = 0;
+  for (std::size_t v = 2; v < piece.vertices.size(); ++v) {
+    const auto at = [&](std::size_t k) { return mesh.points[piece.vertices[k]]; };
+    const Point before = at(v - 1) - at(v - 2), after = at(v) - at(v - 1);
+    const double turn = std::abs(std::atan2(cross(before, after)[2], dot(before, after)));
+    if (turn > straight && turn < sharp_turn)
+      away = std::max(away, std::max(norm(before), norm(after)) * turn / 8);
+  }
+  return away;
+}
+
+/// Boundaries of a file with contact along straight edges of what seems to be round.
+void print_rounded(const SerialMesh &mesh, const Scene &scene) {
+  for (const std::string &boundary : contact_curves(scene)) {
+    if (std::ranges::find(scene.mesh.curved, boundary) != scene.mesh.curved.end()) continue;
+    double away = 0;
+    for (const CurvePiece &piece : curve_pieces(mesh, boundary, scene.name))
+      away = std::max(away, off_its_arc(mesh, piece));
+    if (away > 0)
+      std::printf("  %-20s turns smoothly: its straight edges are up to %s off an arc, and so are "
+                  "gaps; if it is one, name it under curves\n",
+                  boundary.c_str(), formatted("%.1e", away).c_str());
+  }
+}
+
 /// What the mesh of a file is, and where nothing is said of its surface.
 void print_mesh(const SerialMesh &mesh, const Scene &scene, bool of_file) {
   for (const MeshFact &fact : scene.mesh.facts)
@@ -86,6 +117,7 @@ void print_mesh(const SerialMesh &mesh, const Scene &scene, bool of_file) {
   if (!free.empty())
     std::printf("  %-20s %s: no condition, no load and no contact there\n", "free",
                 joined(free).c_str());
+  if (of_file) print_rounded(mesh, scene);
 }
 
 /// Without the round-off of numbers that were computed.

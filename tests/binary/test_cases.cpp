@@ -1,6 +1,10 @@
 // Case files from outside: check and new, geometries, what a run changes of a case.
 #include "run.hpp"
 
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
 namespace rbvi::cases_test {
 namespace {
 
@@ -103,6 +107,36 @@ TEST_F(Cases, AMeshOfOnesOwnBeginsACaseOfIt) {
   EXPECT_TRUE(contains(text, "boundaries: boundary")) << text;
   EXPECT_EQ(shell(rbvi(1, "new other -mesh nowhere.msh")).status, 2);
   EXPECT_FALSE(fs::exists("other"));
+}
+
+/// Half of a disk of radius 1: six triangles about its centre, edges 1 - cos(15 degrees) inside.
+TEST_F(Cases, RoundContactAlongStraightEdgesIsTold) {
+  std::ostringstream mesh;
+  mesh.precision(17);
+  mesh << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"top\"\n1 2 \"rim\"\n"
+          "2 3 \"body\"\n$EndPhysicalNames\n$Nodes\n8\n1 0 1 0\n";
+  for (int i = 0; i < 7; ++i)
+    mesh << i + 2 << ' ' << -std::cos(i * std::numbers::pi / 6) << ' '
+         << 1 - std::sin(i * std::numbers::pi / 6) << " 0\n";
+  mesh << "$EndNodes\n$Elements\n14\n1 1 2 1 1 1 2\n2 1 2 1 1 8 1\n";
+  for (int i = 0; i < 6; ++i)
+    mesh << i + 3 << " 1 2 2 2 " << i + 2 << ' ' << i + 3 << "\n"
+         << i + 9 << " 2 2 3 3 1 " << i + 2 << ' ' << i + 3 << "\n";
+  spill("half.msh", mesh.str() + "$EndElements\n");
+  const std::string half = "rbvi: 1\nphysics: plane_strain\nmesh: {file: half.msh}\n"
+                           "parameters: {push: {range: [0, 0.02], default: 0.01}}\n"
+                           "materials: {body: {at: all, E: 1, nu: 0.3}}\n"
+                           "imposed: {top: {at: top, ux: 0, uy: -push}}\n"
+                           "contact: {floor: {at: rim, against: {plane: {normal: [0, -1], "
+                           "position: 0}}}}\n";
+  spill("half.yaml", half);
+  const std::string says = output_of(rbvi(2, "check half.yaml"));
+  EXPECT_TRUE(contains(says,
+                       "\n  rim                  turns smoothly: its straight edges are up to "
+                       "3.4e-02 off an arc, and so are gaps"))
+      << says;
+  spill("half.yaml", half + "curves: {rim: {circle: [0, 1, 1]}}\n");
+  EXPECT_FALSE(contains(output_of(rbvi(2, "check half.yaml")), "turns smoothly"));
 }
 
 TEST_F(Cases, DefectsAreToldAtOnce) {
