@@ -320,7 +320,8 @@ void System::assemble(const LazyColumns &h, const Laws &laws) {
       for (int j = 0; j < laws.dim - 1; ++j)
         column += u.slope * sets_.direction(j, u.node) * h.column(laws.tangent(u.node) + j);
     auto of_rows = matrix_.col(k);
-    of_rows = column(rows);
+    for (Index r = 0; r < count; ++r) // twice as fast as an expression with indices
+      of_rows[r] = column[rows[r]];
     for (const Index r : turns)
       of_rows[r] = list_[r].a * column[list_[r].first] + list_[r].b * column[list_[r].second];
     of_rows[k] += u.curvature;

