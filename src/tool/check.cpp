@@ -78,17 +78,20 @@ void print_sum(const char *name, const Sum &sum, const ParameterSpace &space) {
                 count == 1 ? "" : (" (" + std::to_string(count) + " terms)").c_str());
 }
 
-/// The largest distance of an edge of a piece from the arc through its vertices and the next ones;
-/// corners apart.
+/// The largest distance of an edge of a piece from the arc through its vertices, where it turns
+/// alike at both of them: what turns once is a corner.
 double off_its_arc(const SerialMesh &mesh, const CurvePiece &piece) {
   constexpr double straight = 1e-3; // radians
-  double away = 0;
+  double away = 0, last_turn = 0;
   for (std::size_t v = 2; v < piece.vertices.size(); ++v) {
     const auto at = [&](std::size_t k) { return mesh.points[piece.vertices[k]]; };
     const Point before = at(v - 1) - at(v - 2), after = at(v) - at(v - 1);
-    const double turn = std::abs(std::atan2(cross(before, after)[2], dot(before, after)));
-    if (turn > straight && turn < sharp_turn)
-      away = std::max(away, std::max(norm(before), norm(after)) * turn / 8);
+    const double turn = std::atan2(cross(before, after)[2], dot(before, after));
+    const double both = std::min(std::abs(turn), std::abs(last_turn));
+    if (both > straight && std::max(std::abs(turn), std::abs(last_turn)) < sharp_turn &&
+        turn * last_turn > 0)
+      away = std::max(away, norm(before) * both / 8);
+    last_turn = turn;
   }
   return away;
 }

@@ -1,9 +1,11 @@
 // Case files from outside: check and new, geometries, what a run changes of a case.
 #include "run.hpp"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <sstream>
+#include <vector>
 
 namespace rbvi::cases_test {
 namespace {
@@ -109,34 +111,48 @@ TEST_F(Cases, AMeshOfOnesOwnBeginsACaseOfIt) {
   EXPECT_FALSE(fs::exists("other"));
 }
 
-/// Half of a disk of radius 1: six triangles about its centre, edges 1 - cos(15 degrees) inside.
-TEST_F(Cases, RoundContactAlongStraightEdgesIsTold) {
+/// A body above a rim: triangles from (0, 1) to each edge.
+std::string fan(const std::vector<std::array<double, 2>> &rim) {
+  const std::size_t count = rim.size();
   std::ostringstream mesh;
   mesh.precision(17);
   mesh << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"top\"\n1 2 \"rim\"\n"
-          "2 3 \"body\"\n$EndPhysicalNames\n$Nodes\n8\n1 0 1 0\n";
+          "2 3 \"body\"\n$EndPhysicalNames\n$Nodes\n"
+       << count + 1 << "\n1 0 1 0\n";
+  for (std::size_t i = 0; i < count; ++i)
+    mesh << i + 2 << ' ' << rim[i][0] << ' ' << rim[i][1] << " 0\n";
+  mesh << "$EndNodes\n$Elements\n"
+       << 2 * count << "\n1 1 2 1 1 1 2\n2 1 2 1 1 " << count + 1 << " 1\n";
+  for (std::size_t i = 0; i + 1 < count; ++i)
+    mesh << 2 * i + 3 << " 1 2 2 2 " << i + 2 << ' ' << i + 3 << "\n"
+         << 2 * i + 4 << " 2 2 3 3 1 " << i + 2 << ' ' << i + 3 << "\n";
+  return mesh.str() + "$EndElements\n";
+}
+
+/// Half of a disk of radius 1, its edges 1 - cos(15 degrees) inside; and a wedge, which has a
+/// corner.
+TEST_F(Cases, RoundContactAlongStraightEdgesIsTold) {
+  std::vector<std::array<double, 2>> round;
   for (int i = 0; i < 7; ++i)
-    mesh << i + 2 << ' ' << -std::cos(i * std::numbers::pi / 6) << ' '
-         << 1 - std::sin(i * std::numbers::pi / 6) << " 0\n";
-  mesh << "$EndNodes\n$Elements\n14\n1 1 2 1 1 1 2\n2 1 2 1 1 8 1\n";
-  for (int i = 0; i < 6; ++i)
-    mesh << i + 3 << " 1 2 2 2 " << i + 2 << ' ' << i + 3 << "\n"
-         << i + 9 << " 2 2 3 3 1 " << i + 2 << ' ' << i + 3 << "\n";
-  spill("half.msh", mesh.str() + "$EndElements\n");
-  const std::string half = "rbvi: 1\nphysics: plane_strain\nmesh: {file: half.msh}\n"
+    round.push_back({-std::cos(i * std::numbers::pi / 6), 1 - std::sin(i * std::numbers::pi / 6)});
+  spill("body.msh", fan(round));
+  const std::string body = "rbvi: 1\nphysics: plane_strain\nmesh: {file: body.msh}\n"
                            "parameters: {push: {range: [0, 0.02], default: 0.01}}\n"
                            "materials: {body: {at: all, E: 1, nu: 0.3}}\n"
                            "imposed: {top: {at: top, ux: 0, uy: -push}}\n"
                            "contact: {floor: {at: rim, against: {plane: {normal: [0, -1], "
                            "position: 0}}}}\n";
-  spill("half.yaml", half);
-  const std::string says = output_of(rbvi(2, "check half.yaml"));
+  spill("body.yaml", body);
+  const std::string says = output_of(rbvi(2, "check body.yaml"));
   EXPECT_TRUE(contains(says,
                        "\n  rim                  turns smoothly: its straight edges are up to "
                        "3.4e-02 off an arc, and so are gaps"))
       << says;
-  spill("half.yaml", half + "curves: {rim: {circle: [0, 1, 1]}}\n");
-  EXPECT_FALSE(contains(output_of(rbvi(2, "check half.yaml")), "turns smoothly"));
+  spill("body.yaml", body + "curves: {rim: {circle: [0, 1, 1]}}\n");
+  EXPECT_FALSE(contains(output_of(rbvi(2, "check body.yaml")), "turns smoothly"));
+  spill("body.yaml", body);
+  spill("body.msh", fan({{-1, 0.2}, {-0.5, 0.1}, {0, 0}, {0.5, 0.1}, {1, 0.2}}));
+  EXPECT_FALSE(contains(output_of(rbvi(2, "check body.yaml")), "turns smoothly"));
 }
 
 TEST_F(Cases, DefectsAreToldAtOnce) {
