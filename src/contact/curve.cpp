@@ -147,6 +147,38 @@ std::size_t count_pieces(const InterfaceMesh &mesh) {
   return chained(edges_of(mesh, all)).shape.pieces.size();
 }
 
+Facing on_arcs(Facing facing, const InterfaceMesh &mesh) {
+  struct Arc {
+    Point begin, chord, centre;
+    double radius;
+  };
+  constexpr double straight = 1e-9; // of the chord
+  std::vector<Arc> arcs;
+  for (Index e = 0; e < mesh.count() && mesh.degree == 2; ++e) {
+    const int edge = mesh.edges.empty() ? 0 : mesh.edges[e], *nodes = mesh.nodes_of(e);
+    const auto [i, j] = simplex_edges[edge];
+    const Point &begin = mesh.points[nodes[i]], &end = mesh.points[nodes[j]],
+                &middle = mesh.points[nodes[mesh.edges.empty() ? 2 : 3 + edge]];
+    const Point rise = middle - (begin + end) / 2, chord = end - begin;
+    const double height = norm(rise), half = norm(chord) / 2;
+    if (height <= straight * half) continue;
+    const double radius = (half * half + height * height) / (2 * height);
+    arcs.push_back({begin, chord, middle - radius / height * rise, radius});
+  }
+  if (arcs.empty()) return facing;
+  facing.on_curve = [arcs = std::move(arcs)](const Point &x) {
+    for (const Arc &arc : arcs) {
+      const Point from = x - arc.begin, out = x - arc.centre;
+      const double along = dot(from, arc.chord) / dot(arc.chord, arc.chord);
+      if (along >= -straight && along <= 1 + straight &&
+          norm(from - along * arc.chord) <= straight * norm(arc.chord))
+        return arc.centre + arc.radius / norm(out) * out;
+    }
+    return x;
+  };
+  return facing;
+}
+
 SparseMatrix linear_gram(const std::vector<Point> &points, const CurveShape &shape, int copies,
                          bool axisymmetric) {
   const auto around = [&](const Point &x) { return circumference(axisymmetric, x); };

@@ -66,6 +66,9 @@ public:
                                 const Point &displacement) const override;
   void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                double least, Outputs &outputs) const override;
+  double gap_error(const FullMu &mu, const Vector &u, const Vector &lambda) const override {
+    return rbvi::gap_error(*this, scene_, facing_, mu, u, lambda);
+  }
   Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override {
     return support_fields(*this, scene_, facing_, mu, u, lambda);
   }
@@ -111,7 +114,7 @@ private:
 
 CurveSupport::CurveSupport(const Scene &scene, InterfaceMesh interface_mesh,
                            const RigidContact &rigid)
-    : EntitySum(scene, std::move(interface_mesh), 1), facing_(rigid.facing),
+    : EntitySum(scene, std::move(interface_mesh), 1), facing_(on_arcs(rigid.facing, mesh_)),
       friction_(rigid.friction), points_(trace_points(mesh_.degree, rigid.lumped)),
       shape_(curve_shape(mesh_, 0, "support's boundary")) {
   if (mesh_.components != 2)
@@ -207,8 +210,8 @@ CurveSupport::Lift CurveSupport::lift(const FullMu &mu, const ContactState &stat
     }
     const auto pressure = [&](std::size_t a) { return rows[a] < 0 ? 0 : lambda[rows[a]]; };
     for (const TracePoint &at : points_) {
-      const Point n =
-          facing_.normal ? facing_.normal(mu, point_on(edge, at)) : faced_at(mu, edge, at).normal;
+      const Point n = facing_.normal ? facing_.normal(mu, curve_point(facing_, point_on(edge, at)))
+                                     : faced_at(mu, edge, at).normal;
       // Tresca's traction acts without pressure, too.
       const bool pressed = at.eta[0] * pressure(0) + at.eta[1] * pressure(1) > 0;
       if (pressed) check_pressed_side(outwards(edge, n), point_on(edge, at));
@@ -375,7 +378,7 @@ NodalEvaluation CurveSupport::nodal_at(const FullMu &mu) const {
 
 ContactRecipe by_multipliers(const RigidContact &rigid) {
   ContactRecipe recipe;
-  recipe.entities = {InterfaceEntities::Kind::curves, {rigid.boundary}};
+  recipe.entities = {InterfaceEntities::Kind::curves, {rigid.boundary}, {}, rigid.curved};
   add_friction(rigid.friction, recipe);
   recipe.coefficients.insert(recipe.coefficients.end(), rigid.coefficients.begin(),
                              rigid.coefficients.end());

@@ -111,4 +111,17 @@ void add_named_outputs(const Scene &scene, const Contact &contact, const FullMu 
   }
 }
 
+void add_gap_error(const Scene &scene, const Contact &contact, const FullMu &mu,
+                   const std::function<Vector(std::size_t i)> &of_interface, const Vector &lambda,
+                   Outputs &outputs) {
+  if (scene.small || scene.components != scene.dim) return;
+  double largest = 0;
+  for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
+    const ContactInterface &interface = *contact.interfaces[i];
+    const Vector own = lambda.segment(contact.first_row[i], interface.dual().size());
+    largest = std::max(largest, interface.gap_error(mu, of_interface(i), own));
+  }
+  outputs.gap_error = largest;
+}
+
 } // namespace rbvi

@@ -53,6 +53,7 @@ public:
         layer_.cells[e].ends[end] =
             number[mesh_.nodes_of(e)[simplex_edges[layer_.cells[e].edge][end]]];
     NitscheCurve &curve_here = layer_.curves.front();
+    curve_here.facing = on_arcs(std::move(curve_here.facing), mesh_);
     curve_here.has_middle = shape.pieces.size() == 1 && !shape.pieces.front().loop;
     for (std::size_t k = 0; k < shape.pieces.size(); ++k) {
       const CurveChain &piece = shape.pieces[k];
@@ -83,6 +84,9 @@ public:
   /// They come from the pressures along the curve: nitsche_outputs.
   void outputs(const FullMu &, const ContactOperators &, const Vector &, double,
                Outputs &) const override {}
+  double gap_error(const FullMu &mu, const Vector &u, const Vector &lambda) const override {
+    return rbvi::gap_error(*this, scene_, layer_.curves.front().facing, mu, u, lambda);
+  }
   Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override {
     return support_fields(*this, scene_, layer_.curves.front().facing, mu, u, lambda);
   }
@@ -134,7 +138,7 @@ ContactRecipe by_nitsche(const RigidContact &rigid, double gamma0) {
   if (rigid.lumped)
     throw bad_input("-lumped yes is for contact by multipliers: leave out -formulation nitsche");
   ContactRecipe recipe;
-  recipe.entities = {InterfaceEntities::Kind::cells_beside, {rigid.boundary}};
+  recipe.entities = {InterfaceEntities::Kind::cells_beside, {rigid.boundary}, {}, rigid.curved};
   recipe.formulation = Formulation::nitsche;
   add_friction(rigid.friction, recipe);
   recipe.coefficients.insert(recipe.coefficients.end(), rigid.coefficients.begin(),

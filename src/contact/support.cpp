@@ -60,6 +60,10 @@ RigidContact rigid_contact(const Support &support) {
         faced(support.normal, [to = *to_surface](const FullMu &mu, const Point &x, const Point &n) {
           return to.along(mu, x, n);
         });
+    rigid.facing.distance = [to = *to_surface](const FullMu &mu, const Point &x,
+                                               const Point &moved) {
+      return to.surface(mu, to.at(mu, x) + moved).distance;
+    };
     rigid.facing.partner = [to = *to_surface](const FullMu &mu, const Point &x) {
       return to.partner(mu, x);
     };
@@ -75,6 +79,27 @@ RigidContact rigid_contact(const Support &support) {
   if (support.body_normal) rigid.record.parts["body_normal"] = support.body_normal.record;
   add_friction(support.friction, rigid.record);
   return rigid;
+}
+
+double gap_error(const ContactInterface &interface, const Scene &scene, const Facing &facing,
+                 const FullMu &mu, const Vector &u, const Vector &lambda) {
+  if (!facing.distance) return 0;
+  const std::vector<Index> &vertices = interface.dual().vertices;
+  GapErrors errors(lambda.head(std::ssize(vertices)));
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    const Index node = vertices[k];
+    const Point &x = interface.mesh().points[node],
+                moved = Point{u[2 * node], u[2 * node + 1], 0} +
+                        (scene.motion ? scene.motion(mu, x) : Point{});
+    const auto [normal, gap] = interface.constraint_at(mu, x);
+    const double way = dot(normal, moved),
+                 left = gap - normal[0] * u[2 * node] - normal[1] * u[2 * node + 1];
+    try {
+      errors.add(lambda[static_cast<Index>(k)], way, left, facing.distance(mu, x, moved));
+    } catch (const Error &) { // nothing is faced from there
+    }
+  }
+  return errors.largest();
 }
 
 Grid support_fields(const ContactInterface &interface, const Scene &scene, const Facing &facing,

@@ -227,9 +227,25 @@ std::string resolution_warning(const Outputs &outputs) {
   return outputs.interfaces.empty() ? zone_warning(outputs) : "";
 }
 
+std::string validity_warning(const Outputs &outputs) {
+  constexpr double most_error = 0.05, most_strained = 0.01;
+  std::string text;
+  if (outputs.gap_error.value_or(0) > most_error)
+    text = "gaps between the deformed bodies differ from those of small kinematics by " +
+           formatted("%.0f", 100 * *outputs.gap_error) +
+           " % of the largest approach: use kinematics: large";
+  else if (outputs.strained.value_or(0) > most_strained)
+    text = "strains or rotations are above " + short_number(large_strain) + " in " +
+           formatted("%.0f", 100 * *outputs.strained) +
+           " % of the body, where small kinematics do not hold: move less, or kinematics: large "
+           "if they are of contact alone";
+  return text.empty() ? text : text + " (small: yes in the case silences this)";
+}
+
 void ResolutionTally::add(const Outputs &outputs) {
-  const std::string warning = resolution_warning(outputs);
+  const std::string warning = resolution_warning(outputs), invalidity = validity_warning(outputs);
   ++all;
+  if (!invalidity.empty() && invalid++ == 0) first_invalid = invalidity;
   const bool at_end = outputs.ends_in_contact.value_or(0) > 0;
   if (warning.empty() || (at_end ? at_ends : coarse)++ > 0) return;
   (at_end ? first_end : first) = warning;
@@ -242,10 +258,12 @@ void ResolutionTally::print(std::ostream &out, const char *answers) const {
                      : end_warning(std::to_string(at_ends) + " of " + std::to_string(all) + ' ' +
                                    answers + " touch an end of the contact boundary"))
         << '\n';
-  if (coarse == 0) return;
-  out << "warning: " << first;
-  if (coarse > 1) out << " (the first of " << coarse << " such " << answers << ')';
-  out << '\n';
+  for (const auto &[count, text] : {std::pair{coarse, first}, {invalid, first_invalid}}) {
+    if (count == 0) continue;
+    out << "warning: " << text;
+    if (count > 1) out << " (the first of " << count << " such " << answers << ')';
+    out << '\n';
+  }
 }
 
 bool is_table_column(const std::string &name) {

@@ -277,29 +277,6 @@ void check_exact_kernels(const Scene &scene) {
 
 namespace {
 
-/// Throws bad_input where a vertex of a curved boundary is not on its curve.
-void check_curves(const Problem &problem) {
-  const Scene &scene = problem.scene();
-  const Mesh &mesh = problem.mesh();
-  double extent = 0;
-  for (const Point &x : mesh.points)
-    extent = std::max({extent, std::abs(x[0]), std::abs(x[1])});
-  for (const std::string &name : scene.mesh.curved) {
-    const std::vector<bool> &on = mesh.boundary.at(name);
-    for (std::size_t v = 0; scene.snap && v < on.size(); ++v) {
-      if (!on[v] || mesh.natural_node[v] >= mesh.total_vertices) continue;
-      const Point &x = mesh.points[v];
-      const double away = norm(scene.snap(x) - x);
-      if (!(away <= 1e-6 * extent))
-        throw bad_input("scene " + scene.name + ": the vertex (" + short_number(x[0]) + ", " +
-                        short_number(x[1]) + ") of boundary '" + name + "' is " +
-                        short_number(away) +
-                        " away from its circle: correct the circle, or leave "
-                        "it out");
-    }
-  }
-}
-
 /// Throws bad_input for a material that is none at a corner of the box.
 void check_material(const Problem &problem, const std::vector<int> &of_cells) {
   const Scene &scene = problem.scene();
@@ -324,7 +301,6 @@ void check_scene(const Problem &problem) {
   std::vector<double> outward, inward;
   const std::vector<int> materials = materials_of_cells(scene, problem.mesh());
   collectively(problem.comm(), [&] {
-    check_curves(problem);
     check_material(problem, materials);
     visit_terms(
         scene, [&](const Form &form) { return cells_of(problem.mesh(), form); },

@@ -1,15 +1,15 @@
 #include "rbvi/fem/interface_mesh.hpp"
 
+#include "seen.hpp"
+
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/facets.hpp"
 #include "rbvi/fem/materials.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/par/gather.hpp"
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 
 namespace rbvi {
 
@@ -22,82 +22,6 @@ struct Found {
   std::vector<PetscInt> natural;
   std::vector<bool> free;
 };
-
-/// A cell that an interface sees: its number in the undistributed mesh, its edge on a boundary (-1:
-/// none), its nodes.
-struct SeenCell {
-  PetscInt number, edge;
-  std::array<int, most_nodes> nodes;
-};
-
-/// Nodes of all ranks by increasing natural number; `fixed`: a bit for each component.
-struct SeenNodes {
-  std::vector<PetscInt> natural, fixed;
-  std::vector<Point> points;
-  Index position(PetscInt number) const {
-    return std::ranges::lower_bound(natural, number) - natural.begin();
-  }
-  const Point &at(PetscInt number) const { return points[position(number)]; }
-};
-
-struct SeenCells {
-  std::vector<SeenCell> cells;
-  SeenNodes nodes;
-};
-
-/// From this rank's nodes, some of them many times; those on the border of several ranks come from
-/// each of them.
-SeenNodes gather_nodes(const Mesh &mesh, const Dofs &dofs, std::vector<int> mine) {
-  std::ranges::sort(mine);
-  mine.erase(std::unique(mine.begin(), mine.end()), mine.end());
-  const auto components = static_cast<std::size_t>(dofs.components);
-  std::vector<PetscInt> natural, fixed;
-  std::vector<double> x;
-  for (const int local : mine) {
-    const auto node = static_cast<std::size_t>(local);
-    natural.push_back(mesh.natural_node[node]);
-    x.insert(x.end(), mesh.points[node].begin(), mesh.points[node].end());
-    fixed.push_back(0);
-    for (std::size_t c = 0; c < components; ++c)
-      if (dofs.free[node * components + c] < 0) fixed.back() |= PetscInt{1} << c;
-  }
-  natural = gather_all(mesh.comm, natural, MPIU_INT);
-  fixed = gather_all(mesh.comm, fixed, MPIU_INT);
-  x = gather_all(mesh.comm, x, MPI_DOUBLE);
-  std::vector<std::size_t> order(natural.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, {}, [&](std::size_t k) { return natural[k]; });
-  SeenNodes all;
-  for (const std::size_t k : order) {
-    if (!all.natural.empty() && all.natural.back() == natural[k]) continue;
-    all.natural.push_back(natural[k]);
-    all.fixed.push_back(fixed[k]);
-    all.points.push_back({x[3 * k], x[3 * k + 1], x[3 * k + 2]});
-  }
-  return all;
-}
-
-/// `mine`: with this rank's local nodes. Collective.
-SeenCells gather_cells(const Mesh &mesh, const Dofs &dofs, const std::vector<SeenCell> &mine) {
-  const auto per_cell = static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree));
-  std::vector<int> nodes;
-  std::vector<PetscInt> packed;
-  for (const SeenCell &cell : mine) {
-    nodes.insert(nodes.end(), cell.nodes.begin(),
-                 cell.nodes.begin() + static_cast<std::ptrdiff_t>(per_cell));
-    packed.insert(packed.end(), {cell.number, cell.edge});
-    for (std::size_t i = 0; i < per_cell; ++i)
-      packed.push_back(mesh.natural_node[cell.nodes[i]]);
-  }
-  SeenCells all{{}, gather_nodes(mesh, dofs, std::move(nodes))};
-  packed = gather_all(mesh.comm, packed, MPIU_INT);
-  for (std::size_t at = 0; at < packed.size(); at += 2 + per_cell) {
-    SeenCell &cell = all.cells.emplace_back(SeenCell{packed[at], packed[at + 1], {}});
-    for (std::size_t i = 0; i < per_cell; ++i)
-      cell.nodes[i] = static_cast<int>(all.nodes.position(packed[at + 2 + i]));
-  }
-  return all;
-}
 
 /// The pieces of a boundary in the order that InterfaceMesh has, `second` of two; `backwards`: the
 /// body is on the right.
@@ -178,7 +102,9 @@ void add_closed_ends(const std::vector<OrderedPiece> &pieces, InterfaceMesh &int
       interface.closed_ends.push_back(closed ? 1 : 0);
 }
 
-Found find_cells_beside(const Mesh &mesh, const Dofs &dofs, const std::string &boundary) {
+Found find_cells_beside(const Mesh &mesh, const Dofs &dofs, const InterfaceEntities &entities,
+                        const Scene &scene) {
+  const std::string &boundary = entities.parts.front();
   std::vector<SeenCell> mine;
   for (const auto &[cell, facet] : mesh.facets.at(boundary)) {
     const std::vector<int> ends = facet_nodes(2, 1, facet);
@@ -189,6 +115,7 @@ Found find_cells_beside(const Mesh &mesh, const Dofs &dofs, const std::string &b
     mine.push_back(seen_cell(mesh, cell, edge));
   }
   SeenCells seen = gather_cells(mesh, dofs, mine);
+  if (entities.snapped) move_middles(mesh, scene, boundary, seen.nodes);
   const std::vector<OrderedPiece> pieces = ordered_pieces(mesh, seen.nodes, boundary, true, false);
   std::map<PetscInt, int> number; // of the edge by where it begins
   visit_edges(pieces, [&](PetscInt begin, PetscInt) { number.emplace(begin, std::ssize(number)); });
@@ -198,33 +125,6 @@ Found find_cells_beside(const Mesh &mesh, const Dofs &dofs, const std::string &b
   Found found = found_cells(mesh, dofs, std::move(seen));
   add_closed_ends(pieces, found.mesh);
   return found;
-}
-
-/// What contact sees of a boundary: its nodes, and the middle of the edge that begins at a vertex.
-struct SeenCurve {
-  SeenNodes nodes;
-  std::map<PetscInt, PetscInt> middle;
-};
-
-/// Collective.
-SeenCurve gather_curve(const Mesh &mesh, const Dofs &dofs, const std::string &boundary) {
-  std::vector<int> mine;
-  std::vector<PetscInt> middles;
-  for (const auto &[cell, facet] : mesh.facets.at(boundary)) {
-    const std::array<int, most_nodes> nodes = nodes_of(mesh, cell);
-    std::vector<int> own;
-    for (const int i : facet_nodes(2, mesh.degree, facet))
-      own.push_back(nodes[i]);
-    mine.insert(mine.end(), own.begin(), own.end());
-    if (mesh.degree == 1) continue;
-    for (const int node : own)
-      middles.push_back(mesh.natural_node[node]);
-  }
-  SeenCurve curve{gather_nodes(mesh, dofs, std::move(mine)), {}};
-  middles = gather_all(mesh.comm, middles, MPIU_INT);
-  for (std::size_t i = 0; i < middles.size(); i += 3)
-    curve.middle[middles[i]] = middles[i + 2];
-  return curve;
 }
 
 /// Adds a boundary, whose nodes begin at `first`: vertices, then middles.
@@ -249,7 +149,7 @@ void add_curve(const Mesh &mesh, const SeenCurve &curve, const std::vector<Order
 }
 
 Found find_curves(const Mesh &mesh, const Dofs &dofs, const InterfaceEntities &entities,
-                  const std::function<Point(const Point &)> &snap) {
+                  const Scene &scene) {
   const bool sees_all = entities.components.empty(); // then it takes fixed nodes into account
   const auto sees = [&](int c) {
     return sees_all || std::ranges::find(entities.components, c) != entities.components.end();
@@ -259,14 +159,13 @@ Found find_curves(const Mesh &mesh, const Dofs &dofs, const InterfaceEntities &e
   for (std::size_t part = 0; part < entities.parts.size(); ++part) {
     const std::string &name = entities.parts[part];
     const std::size_t first = found.natural.size();
-    const SeenCurve curve = gather_curve(mesh, dofs, name);
+    SeenCurve curve = gather_curve(mesh, dofs, name);
+    if (entities.snapped) move_middles(mesh, scene, name, curve.nodes);
     add_curve(mesh, curve,
               ordered_pieces(mesh, curve.nodes, name, entities.parts.size() == 1, part > 0), found);
     for (std::size_t i = first; i < found.natural.size(); ++i) {
       const Index at = curve.nodes.position(found.natural[i]);
-      const bool middle = found.natural[i] >= mesh.total_vertices;
-      const Point &x = curve.nodes.points[at];
-      found.mesh.points.push_back(middle && entities.snapped && snap ? snap(x) : x);
+      found.mesh.points.push_back(curve.nodes.points[at]);
       for (int c = 0; c < dofs.components; ++c) {
         const bool free = (curve.nodes.fixed[at] >> c & 1) == 0;
         if (!free && sees(c) && !sees_all)
@@ -286,8 +185,8 @@ Found find_interface(const Mesh &mesh, const Dofs &dofs, const Scene &scene,
     throw bad_input("contact along a boundary is for two dimensions: the mesh has " +
                     std::to_string(mesh.dim));
   Found found = entities.kind == cells    ? find_region(mesh, dofs, entities.parts.front())
-                : entities.kind == curves ? find_curves(mesh, dofs, entities, scene.snap)
-                                          : find_cells_beside(mesh, dofs, entities.parts.front());
+                : entities.kind == curves ? find_curves(mesh, dofs, entities, scene)
+                                          : find_cells_beside(mesh, dofs, entities, scene);
   found.mesh.dim = mesh.dim;
   found.mesh.degree = mesh.degree;
   found.mesh.components = dofs.components;

@@ -215,10 +215,10 @@ void add_named_outputs(const Problem &problem, const FullMu &mu, const Vector &u
     if (!at_cells) at_cells = at(problem.output_cells().nodes);
     return cell_output(problem.scene(), output, mu, problem.output_cells(), *at_cells);
   };
-  add_named_outputs(
-      problem.scene(), problem.contact(), mu,
-      {[&](std::size_t i) { return at(problem.places().natural_nodes[i]); }, of_cells}, lambda,
-      outputs);
+  const OutputSources sources{[&](std::size_t i) { return at(problem.places().natural_nodes[i]); },
+                              of_cells};
+  add_named_outputs(problem.scene(), problem.contact(), mu, sources, lambda, outputs);
+  add_gap_error(problem.scene(), problem.contact(), mu, sources.of_interface, lambda, outputs);
 }
 
 Mat Problem::v_product() {

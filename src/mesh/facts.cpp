@@ -290,7 +290,9 @@ void check_glued(const Subject &s) {
 
 /// Throws bad_input for a scene that speaks of a part its recipe does not name.
 void check_recipe(const Scene &scene) {
-  std::vector<std::string> known = scene.mesh.regions, used = scene.mesh.curved;
+  std::vector<std::string> known = scene.mesh.regions, used;
+  for (const auto &[name, curve] : scene.curves)
+    used.push_back(name);
   known.insert(known.end(), scene.mesh.boundaries.begin(), scene.mesh.boundaries.end());
   known.emplace_back("");
   if (scene.axisymmetric) known.emplace_back(axis_of_turning);

@@ -3,6 +3,7 @@
 #include "points.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/io/checksum.hpp"
 
 #include <algorithm>
@@ -88,6 +89,17 @@ std::vector<bool> interface_of(const SerialMesh &mesh, const std::string &region
   return inside;
 }
 
+/// Vertices of a boundary, or of the rim of a region.
+std::vector<bool> on_part(const SerialMesh &mesh, const std::string &name) {
+  const auto facets = mesh.boundary.find(name);
+  if (facets == mesh.boundary.end()) return interface_of(mesh, name);
+  std::vector<bool> result(mesh.points.size(), false);
+  for (const auto &facet : facets->second)
+    for (int i = 0; i < mesh.dim; ++i)
+      result[facet[i]] = true;
+  return result;
+}
+
 /// Edges of triangles that a region shares with the rest of the mesh, each once.
 std::vector<std::array<int, 2>> rim_edges(const SerialMesh &mesh, const std::string &region) {
   const std::vector<bool> in_region = cells_in(mesh, region);
@@ -154,21 +166,30 @@ void snap_curves(SerialMesh &mesh, const Scene &scene) {
   const std::vector<bool> on_rim = interface_of(mesh, inclusion.region);
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
     if (on_rim[v]) mesh.points[v] = at_distance(inclusion.radius, mesh.points[v], inclusion.centre);
-  if (!scene.snap) return;
-  std::vector<bool> on_curve(mesh.points.size(), false);
-  for (const ContactRecipe &contact : scene.contacts) {
-    if (contact.entities.kind != InterfaceEntities::Kind::cells) continue;
-    const std::vector<bool> on_rim_of_region = interface_of(mesh, contact.entities.parts.front());
-    for (std::size_t v = 0; v < on_curve.size(); ++v)
-      on_curve[v] = on_curve[v] || on_rim_of_region[v];
+  std::vector<bool> moved(mesh.points.size(), false); // where two curves meet, by the first
+  for (const auto &[name, curve] : scene.curves) {
+    const std::vector<bool> on_curve = on_part(mesh, name);
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+      if (!on_curve[v] || moved[v]) continue;
+      mesh.points[v] = curve(mesh.points[v]);
+      moved[v] = true;
+    }
   }
-  for (const std::string &curved : scene.mesh.curved)
-    if (const auto facets = mesh.boundary.find(curved); facets != mesh.boundary.end())
-      for (const auto &facet : facets->second)
-        for (int i = 0; i < mesh.dim; ++i)
-          on_curve[facet[i]] = true;
-  for (std::size_t v = 0; v < mesh.points.size(); ++v)
-    if (on_curve[v]) mesh.points[v] = scene.snap(mesh.points[v]);
+}
+
+void check_curves(const SerialMesh &mesh, const Scene &scene, const std::string &source) {
+  const double tolerance = 1e-6 * extent_of(mesh);
+  for (const auto &[name, curve] : scene.curves) {
+    const std::vector<bool> on_curve = on_part(mesh, name);
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+      if (!on_curve[v]) continue;
+      const Point &x = mesh.points[v];
+      if (const double away = distance(curve(x), x); !(away <= tolerance))
+        throw bad_input("the vertex (" + short_number(x[0]) + ", " + short_number(x[1]) + ") of '" +
+                        name + "' of " + source + " is " + short_number(away) +
+                        " away from its circle: correct the circle under curves, or leave it out");
+    }
+  }
 }
 
 void balance_inclusion(SerialMesh &mesh, const Scene &scene) {

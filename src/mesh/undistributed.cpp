@@ -100,6 +100,7 @@ SerialMesh undistributed_mesh(const Scene &scene, const MeshOptions &options,
     mesh = options.file.empty() ? generated_mesh(scene) : read_gmsh(options.file, scene);
     check_mesh(mesh, source);
     check_facts(mesh, scene, source);
+    check_curves(mesh, scene, source);
     for (const std::string &name : contact_curves(scene))
       (void)curve_pieces(mesh, name, source);
     mesh = refined_mesh(std::move(mesh), options.refine, scene, source, levels);

@@ -147,7 +147,9 @@ Vector OnlineSolver::field(const ReducedAnswer &solution) const {
 
 void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vector &lambda,
                                         Outputs &outputs) const {
-  if (scene_.outputs.empty()) return;
+  const bool faces_surfaces = !scene_.small && !model_.evaluates_contact() &&
+                              model_.contact.trace_dofs.empty() && scene_.components == scene_.dim;
+  if (scene_.outputs.empty() && !faces_surfaces) return;
   Vector columns; // once for all interfaces
   const auto of_interface = [&](std::size_t interface) {
     const InterfaceMesh &mesh = contact_.interfaces[interface]->mesh();
@@ -161,6 +163,7 @@ void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vec
   };
   add_named_outputs(scene_, contact_, solution.mu,
                     {of_interface, cell_outputs_.at(solution.mu, solution.u)}, lambda, outputs);
+  if (faces_surfaces) add_gap_error(scene_, contact_, solution.mu, of_interface, lambda, outputs);
 }
 
 Outputs OnlineSolver::outputs(const Mu &mu, const ReducedAnswer &solution) const {

@@ -243,9 +243,8 @@ void add_contact(const Scene &scene, const Contact &contact, Text &text) {
 
 void add_mesh(const Scene &scene, Text &text) {
   const MeshRecipe &mesh = scene.mesh;
-  for (const auto &[name, list] : {std::pair{"regions", &mesh.regions},
-                                   {"boundaries", &mesh.boundaries},
-                                   {"curved", &mesh.curved}})
+  for (const auto &[name, list] :
+       {std::pair{"regions", &mesh.regions}, {"boundaries", &mesh.boundaries}})
     if (!list->empty()) text.add(std::string("mesh ") + name, joined(*list));
   for (const MeshFact &fact : mesh.facts) {
     const std::string own = "mesh '" + fact.part + "'";
@@ -255,9 +254,9 @@ void add_mesh(const Scene &scene, Text &text) {
         values.push_back(fact.distance(at.x));
       });
   }
-  if (scene.snap)
-    text.add_values("snap", [&](const Draw &at, std::vector<double> &values) {
-      const Point y = scene.snap(at.x);
+  for (const auto &[name, curve] : scene.curves)
+    text.add_values("curve of '" + name + "'", [&](const Draw &at, std::vector<double> &values) {
+      const Point y = curve(at.x);
       values.assign(y.begin(), y.end());
     });
 }
@@ -290,7 +289,8 @@ std::string scene_text(const Scene &scene, const Contact &contact) {
   Text text(scene, contact);
   add_parameters(scene, text);
   Record record = record_of(scene);
-  record.parts.erase("check"); // refuses parameters, and changes no answer
+  record.parts.erase("check");   // refuses parameters, and changes no answer
+  record.numbers.erase("small"); // nor does what warnings there are
   std::erase_if(record.parts, [](const auto &part) { return part.first.starts_with("output_"); });
   for (auto &[name, part] : record.parts)
     if (name.starts_with("contact_")) part.texts.erase("name"); // nor does what it is called

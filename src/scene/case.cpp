@@ -168,6 +168,7 @@ void read_symmetry(const Reader &reader, Scene &scene, Defects &defects) {
   const CaseNode &node = section(reader, "symmetric");
   defects.collect(node, [&] {
     scene.mirror_images = number_or(reader, reader.root, "mirror_images", 1);
+    scene.small = yes_or(reader.root, "small", false);
     if (node.value.empty()) return;
     const auto found = std::ranges::find(reader.parameters, node.value);
     const CaseNode *declared = section(reader, "parameters").find(node.value);

@@ -33,6 +33,8 @@ const std::vector<CaseKey> all_keys{
     {"", "symmetric", "yes | no | parameter",
      "data and solutions are symmetric about x = 0 (of a parameter: while it is fixed at 0)"},
     {"", "mirror_images", "number", "of which the domain is one; forces are those of all"},
+    {"", "small", "no | yes",
+     "small kinematics are meant: no warning where bodies move too far for them"},
     {"", "train", "text",
      "default training set: grid:5,5 | random:200:1 | corners + random:160:1 | FILE.csv"},
     {"", "validate", "text", "default validation set"},
@@ -118,8 +120,8 @@ const std::vector<CaseKey> all_keys{
     {"contact.*", "against", "boundary or table", "another body, or something rigid"},
     {"contact.*", "normal", "auto | body | rigid | deformed",
      "of contact: of the body at rest, of what is rigid at the next point, of the deformed body; "
-     "auto: body with small kinematics on circles that the map does not turn or stretch, else "
-     "rigid"},
+     "auto: body with small kinematics of a circle that the map does not turn or stretch against a "
+     "disk, else rigid"},
     {"contact.*", "gap", "closest | ray | vertical",
      "small kinematics: along the normal to the next point, along a ray, to the point below"},
     {"contact.*", "gap_from", "curve | edges",

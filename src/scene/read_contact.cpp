@@ -94,6 +94,7 @@ RigidContact following(const CaseNode &node, const Side &side, const Named<Surfa
   return rigid_contact(contact);
 }
 
+/// The published law takes the normal of a round body on a disk; any other that of what is rigid.
 RigidContact at_rest(const CaseNode &node, const Side &side, const Named<Surface> &surface,
                      const Friction &friction, const Scene &scene) {
   const std::string choice = normal_choice(node);
@@ -102,9 +103,10 @@ RigidContact at_rest(const CaseNode &node, const Side &side, const Named<Surface
   if (choice == "body" && !side.normal)
     throw bad_input("normal: body needs a boundary on a circle ('curves:') and a map that does "
                     "not turn or stretch it");
-  const Named<PointMap> normal = choice == "rigid" || !side.normal
-                                     ? normal_of_surface(surface, side.at ? side.at : scene.map)
-                                     : side.normal;
+  const bool published = choice == "auto" && entry(node, "against").find("disk") != nullptr;
+  const Named<PointMap> normal = side.normal && (choice == "body" || published)
+                                     ? side.normal
+                                     : normal_of_surface(surface, side.at ? side.at : scene.map);
   const std::string gap = choice_or(node, "gap", "closest", {"closest", "ray", "vertical"});
   const GapKind kind = gap == "ray"        ? GapKind::ray
                        : gap == "vertical" ? GapKind::vertical
@@ -168,7 +170,7 @@ ContactRecipe with_something_rigid(Reader &reader, const CaseNode &node, const C
   if (scene.axisymmetric && yes_or(node, "lumped", false))
     throw bad_input("vertex quadrature sees nothing on the axis: leave out lumped");
   const Side side = side_of(reader, entry(node, "at").value, scene);
-  const RigidContact rigid =
+  RigidContact rigid =
       plane != nullptr
           ? plane_contact(reader, node, *plane, side, scene)
           : surface_contact(reader, node,
@@ -176,6 +178,7 @@ ContactRecipe with_something_rigid(Reader &reader, const CaseNode &node, const C
                                 ? disk_in(reader, *disk)
                                 : level_set(value_and_gradient_of(formula_in(reader, *level))),
                             side, scene);
+  rigid.curved = !side.at && choice_or(node, "gap_from", "curve", {"curve", "edges"}) == "curve";
   if (choice_or(node, "formulation", "mixed", {"mixed", "nitsche"}) == "mixed")
     return by_multipliers(rigid);
   if (std::ranges::any_of(scene.materials,

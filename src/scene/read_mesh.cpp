@@ -44,10 +44,8 @@ MeshRecipe recipe_of_sections(const Reader &reader) {
     if (!is_over_contacts(reader, node)) add(node, "at", recipe.boundaries);
   }
   for (const auto &[name, node] : section(reader, "curves").entries)
-    if (std::ranges::find(recipe.regions, name) == recipe.regions.end()) {
+    if (std::ranges::find(recipe.regions, name) == recipe.regions.end())
       add_name(recipe.boundaries, name);
-      recipe.curved.push_back(name);
-    }
   return recipe;
 }
 
@@ -68,18 +66,6 @@ Circle circle_in(const Reader &reader, const CaseNode &node) {
   const std::vector<double> circle = numbers_in(reader, entry(node, "circle"), 3);
   if (!(circle[2] > 0)) throw bad_input("the radius of a circle is positive");
   return {{circle[0], circle[1], 0}, circle[2], yes_or(node, "hole", false)};
-}
-
-/// Each circle once, for refined vertices.
-std::vector<Circle> all_circles(const Reader &reader) {
-  std::vector<Circle> all;
-  for (const auto &[name, circles] : reader.circles)
-    for (const Circle &circle : circles)
-      if (std::ranges::none_of(all, [&](const Circle &other) {
-            return other.centre == circle.centre && other.radius == circle.radius;
-          }))
-        all.push_back(circle);
-  return all;
 }
 
 } // namespace
@@ -243,8 +229,8 @@ void read_mesh(Reader &reader, Scene &scene, Defects &defects) {
     defects.collect(node, [&, &own = name, &value = node] {
       reader.circles[own] = {circle_in(reader, value)};
     });
-  const std::vector<Circle> circles = all_circles(reader);
-  if (!circles.empty()) scene.snap = [circles](const Point &x) { return on_circles(circles, x); };
+  for (const auto &[name, circles] : reader.circles)
+    scene.curves[name] = [circles](const Point &x) { return on_circles(circles, x); };
   const CaseNode &map = section(reader, "map");
   defects.collect(map, [&] {
     const std::vector<Expression> components = map_of(reader);

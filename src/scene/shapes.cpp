@@ -26,7 +26,7 @@ Shape square_with_disc(const ShapeNumbers &numbers) {
   constexpr double radius = 0.2;
   check_edges(numbers.edges, 12, 12);
   const Place square = box({-0.5, -0.5, 0}, {0.5, 0.5, 0});
-  MeshRecipe recipe{"square_with_disc", {"obstacle"}, {"boundary"}, {}, numbers.edges};
+  MeshRecipe recipe{"square_with_disc", {"obstacle"}, {"boundary"}, numbers.edges};
   recipe.facts = {{"", "the square of side 1 about the origin", square, 1},
                   {"obstacle", "the disk of radius 0.2 about the origin", disk(origin, radius),
                    pi * radius * radius},
@@ -43,7 +43,6 @@ Shape half_disc(const ShapeNumbers &numbers) {
   MeshRecipe recipe{numbers.angle == 45 ? "wide_half_disc" : "half_disc",
                     {"core"},
                     {"top", "contact", "arc"},
-                    {"arc"},
                     numbers.edges};
   recipe.facts = {
       {"", "the half y <= 0 of the disk of radius 1 about the origin",
@@ -65,7 +64,7 @@ Shape annulus(const ShapeNumbers &numbers) {
   constexpr double hub = 0.3; // in the mesh a polygon with its vertices on the circle
   check_edges(numbers.edges, 8, 1);
   const Place outside = [](const Point &x) { return hub - std::hypot(x[0], x[1]); };
-  MeshRecipe recipe{"annulus", {}, {"hub", "rim", "top", "bottom"}, {"hub", "rim"}, numbers.edges};
+  MeshRecipe recipe{"annulus", {}, {"hub", "rim", "top", "bottom"}, numbers.edges};
   recipe.facts = {
       {"", "the disk of radius 1 about the origin, without its hub",
        common_part(disk(origin, 1), outside), pi * (1 - 0.9 * hub * hub)},
@@ -109,7 +108,6 @@ Shape two_quarter_discs(const ShapeNumbers &numbers) {
   MeshRecipe recipe{numbers.edges == 0 ? "two_quarter_discs" : "two_graded_quarter_discs",
                     {"upper", "lower"},
                     {"axis", "top", "bottom", "slave", "master", "arc"},
-                    {"arc"},
                     numbers.edges};
   std::vector<MeshFact> &facts = recipe.facts = quarter_facts(1);
   for (MeshFact &fact : quarter_facts(-1))

@@ -127,6 +127,8 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
   result.u = whole_displacement(problem_, mu, result.free_u.get());
   add_named_outputs(problem_, op.mu, result.u, result.lambda, result.outputs);
   if (problem_.scene().components == 1) result.outputs.min_u = result.u.minCoeff();
+  if (result.outputs.gap_error && !follows_state(problem_.contact()))
+    result.outputs.strained = strained_share(problem_, op.mu, result.u);
   result.outputs.seconds = MPI_Wtime() - start;
   check_finite(result.outputs);
   method_->check(result);

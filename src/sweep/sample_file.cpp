@@ -12,7 +12,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr int sample_schema = 8;
+constexpr int sample_schema = 9;
 
 /// The outputs that a sample stores, in the order of their file record.
 constexpr std::array stored_outputs{&Outputs::energy,
@@ -31,6 +31,8 @@ constexpr std::array stored_outputs{&Outputs::energy,
                                     &Outputs::ends_in_contact,
                                     &Outputs::free_nodes,
                                     &Outputs::slip_directions,
+                                    &Outputs::gap_error,
+                                    &Outputs::strained,
                                     &Outputs::kkt_residual,
                                     &Outputs::max_penetration,
                                     &Outputs::friction_violation,

@@ -20,6 +20,7 @@
 #include <cstdio>
 #include <iostream>
 #include <map>
+#include <set>
 
 namespace rbvi {
 
@@ -78,9 +79,10 @@ void print_sum(const char *name, const Sum &sum, const ParameterSpace &space) {
                 count == 1 ? "" : (" (" + std::to_string(count) + " terms)").c_str());
 }
 
-/// The largest distance of an edge of a piece from the arc through its vertices, where it turns
-/// alike at both of them: what turns once is a corner.
-double off_its_arc(const SerialMesh &mesh, const CurvePiece &piece) {
+/// The largest distance of an edge of a piece that is on no curve of the case from the arc through
+/// its vertices, where it turns alike at both of them: what turns once is a corner.
+double off_its_arc(const SerialMesh &mesh, const CurvePiece &piece,
+                   const std::set<std::pair<PetscInt, PetscInt>> &curved) {
   constexpr double straight = 1e-3; // radians
   double away = 0, last_turn = 0;
   for (std::size_t v = 2; v < piece.vertices.size(); ++v) {
@@ -89,7 +91,8 @@ double off_its_arc(const SerialMesh &mesh, const CurvePiece &piece) {
     const double turn = std::atan2(cross(before, after)[2], dot(before, after));
     const double both = std::min(std::abs(turn), std::abs(last_turn));
     if (both > straight && std::max(std::abs(turn), std::abs(last_turn)) < sharp_turn &&
-        turn * last_turn > 0)
+        turn * last_turn > 0 &&
+        !curved.contains(std::minmax(piece.vertices[v - 2], piece.vertices[v - 1])))
       away = std::max(away, norm(before) * both / 8);
     last_turn = turn;
   }
@@ -98,11 +101,15 @@ double off_its_arc(const SerialMesh &mesh, const CurvePiece &piece) {
 
 /// Boundaries of a file with contact along straight edges of what seems to be round.
 void print_rounded(const SerialMesh &mesh, const Scene &scene) {
+  std::set<std::pair<PetscInt, PetscInt>> curved;
+  for (const auto &[name, curve] : scene.curves)
+    if (const auto own = mesh.boundary.find(name); own != mesh.boundary.end())
+      for (const auto &facet : own->second)
+        curved.insert(std::minmax<PetscInt>(facet[0], facet[1]));
   for (const std::string &boundary : contact_curves(scene)) {
-    if (std::ranges::find(scene.mesh.curved, boundary) != scene.mesh.curved.end()) continue;
     double away = 0;
     for (const CurvePiece &piece : curve_pieces(mesh, boundary, scene.name))
-      away = std::max(away, off_its_arc(mesh, piece));
+      away = std::max(away, off_its_arc(mesh, piece, curved));
     if (away > 0)
       std::printf("  %-20s turns smoothly: its straight edges are up to %s off an arc, and so are "
                   "gaps; if it is one, name it under curves\n",
@@ -271,6 +278,8 @@ void command_check(const MeasureOptions &options, const SolveOptions &solve) {
     if (!solve.vtu.empty()) print_written(std::cout, write_check(solve.vtu, problem, mesh));
     std::printf("at the middle of the box, %s:\n", at.c_str());
     print_outputs(std::cout, solution.outputs);
+    if (const std::string invalid = validity_warning(solution.outputs); !invalid.empty())
+      std::printf("warning: %s\n", invalid.c_str());
     if (solution.outputs.contact_nodes && *solution.outputs.contact_nodes == 0)
       std::printf("warning: nothing touches there\n");
   });

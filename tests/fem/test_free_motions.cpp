@@ -107,7 +107,7 @@ TEST(FreeMotions, OfABodyInSpaceAreNamed) {
   Scene scene = make_scene("membrane_obstacle");
   scene.dim = scene.components = 3;
   scene.mesh = {"", {"core"}, {"boundary"}};
-  scene.snap = {};
+  scene.curves = {};
   scene.contacts = {};
   scene.f = {};
   scene.map = [](const FullMu &, const Point &x) { return x; };

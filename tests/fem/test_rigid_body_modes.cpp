@@ -50,7 +50,7 @@ TEST(RigidBodyModes, HaveNoStrainInSpace) {
   Scene scene = make_scene("membrane_obstacle");
   scene.dim = 3;
   scene.mesh = {"", {"core"}, {"boundary"}};
-  scene.snap = {};
+  scene.curves = {};
   scene.contacts = {};
   scene.a = scene.f = {};
   const TemporaryFile file(cube_mesh(6, 0.1));

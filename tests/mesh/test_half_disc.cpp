@@ -21,9 +21,11 @@ Scene half_disc_scene(int edges) {
   Scene scene;
   scene.name = "disc_on_support";
   scene.components = 2;
-  scene.mesh = {"half_disc", {"core"}, {"top", "contact", "arc"}, {"arc"}, edges};
+  scene.mesh = {"half_disc", {"core"}, {"top", "contact", "arc"}, edges};
   scene.mesh.inclusion = {"core", {0, 0, 0}, 0.6};
-  scene.snap = [](const Point &x) -> Point { return {x[0] / radius(x), x[1] / radius(x), 0}; };
+  scene.curves["arc"] = [](const Point &x) -> Point {
+    return {x[0] / radius(x), x[1] / radius(x), 0};
+  };
   return scene;
 }
 

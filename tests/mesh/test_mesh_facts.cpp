@@ -372,7 +372,7 @@ TEST(MeshFacts, APartThatTheRecipeDoesNotNameIsRefused) {
 
 TEST(MeshFacts, AfterARefinementCurvesAreStillInPlace) {
   Scene scene = make_scene("rigid_disk");
-  scene.snap = [](const Point &x) { return x; };
+  scene.curves.clear();
   expect_refused(
       [&] {
         (void)make_mesh(PETSC_COMM_WORLD, scene, {"", 1});
@@ -380,10 +380,23 @@ TEST(MeshFacts, AfterARefinementCurvesAreStillInPlace) {
       {"of the built-in mesh, refined 1 times is not"});
 }
 
+/// Of any boundary, with contact or without, before refinement moves a vertex there.
+TEST(MeshFacts, ACurveThatAVertexIsNotOnIsRefused) {
+  Scene scene = make_scene("rigid_disk");
+  for (const std::string name : {"arc", "contact", "core"}) {
+    scene.curves = {{name, [](const Point &x) { return 1.001 * x; }}};
+    expect_refused(
+        [&] {
+          (void)make_mesh(PETSC_COMM_WORLD, scene, {"", 1});
+        },
+        {"'" + name + "' of the built-in mesh", "0.0", "away from its circle"});
+  }
+}
+
 /// Edges along an arc that no curve of the case snaps stay straight.
 TEST(MeshFacts, FactsOfACaseAreThoseOfItsFile) {
   Scene scene = make_scene("rigid_disk");
-  scene.snap = [](const Point &x) { return x; };
+  scene.curves.clear();
   scene.mesh.inclusion = {};
   scene.mesh.generator = "";
   const TemporaryFile file(written(drawing_of(half_disc()), {"4.1", false}));

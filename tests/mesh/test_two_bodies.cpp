@@ -28,11 +28,9 @@ Scene two_discs_scene() {
   Scene scene;
   scene.name = "two_discs";
   scene.components = 2;
-  scene.mesh = {"two_quarter_discs",
-                {"upper", "lower"},
-                {"axis", "top", "bottom", "slave", "master", "arc"},
-                {"arc"}};
-  scene.snap = onto_circle;
+  scene.mesh = {
+      "two_quarter_discs", {"upper", "lower"}, {"axis", "top", "bottom", "slave", "master", "arc"}};
+  scene.curves = {{"arc", onto_circle}};
   return scene;
 }
 
@@ -163,7 +161,7 @@ TEST(TwoQuarterDiscs, RefinementFollowsTheCircles) {
 
 TEST(TwoQuarterDiscs, WithoutACurvedBoundaryNothingIsMoved) {
   Scene scene = two_discs_scene();
-  scene.mesh.curved.clear();
+  scene.curves.clear();
   const SerialMesh fine = refined(two_quarter_discs());
   SerialMesh mesh = fine;
   snap_curves(mesh, scene);
@@ -299,7 +297,7 @@ TEST(TwoBodiesCounts, MakeMeshRefinesAndSnaps) {
 
 TEST(TwoBodiesLabels, ASceneNamesThoseThatItNeeds) {
   Scene scene = two_discs_scene();
-  scene.mesh = {"two_quarter_discs", {"upper"}, {"top", "arc"}, {"arc"}};
+  scene.mesh = {"two_quarter_discs", {"upper"}, {"top", "arc"}};
   const Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {"", 1});
   EXPECT_EQ(mesh.region.size(), 1u);
   EXPECT_EQ(mesh.boundary.size(), 2u);

@@ -145,7 +145,7 @@ TEST(Imposed, ALinearFieldOnTetrahedraIsReproduced) {
     scene.degree = degree;
     scene.mesh = {"", {"core"}, {"boundary"}};
     scene.map = [](const FullMu &, const Point &x) { return x; };
-    scene.snap = {};
+    scene.curves = {};
     scene.contacts = {obstacle({"core", [](const FullMu &, const Point &) { return -9.0; }})};
     scene.a = {mapped_term(laplace("", degree))};
     scene.f.clear();

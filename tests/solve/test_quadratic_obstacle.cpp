@@ -119,7 +119,7 @@ HfSolution solve_cube(MPI_Comm comm, const std::string &file, int degree, bool l
   scene.map = [](const FullMu &mu, const Point &x) {
     return Point{x[0], x[1], mu[0] / 0.2 * x[2]};
   };
-  scene.snap = {};
+  scene.curves = {};
   scene.contacts = {obstacle({"core", [](const FullMu &, const Point &) { return -0.5; }, lumped})};
   scene.a = {mapped_term(laplace("", degree))};
   scene.v_product = {exact_term(h1_product(1, 1, degree))};

@@ -18,7 +18,7 @@ Scene cube_scene() {
   scene.map = [](const FullMu &mu, const Point &x) {
     return Point{x[0], x[1], mu[0] / 0.2 * x[2]};
   };
-  scene.snap = {};
+  scene.curves = {};
   scene.contacts = {obstacle({"core", [](const FullMu &, const Point &) { return -0.5; }})};
   scene.a = {mapped_term(laplace(""))};
   scene.f = {mapped_term(constant_load("", -25))};

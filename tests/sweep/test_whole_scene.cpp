@@ -87,7 +87,8 @@ TEST(WholeScene, EveryChangeOfAMembraneIsNoticed) {
                    return 1.5 * (std::hypot(x[0], x[1]) - 0.2);
                  };
                }},
-              {"snap values", [](Scene &s) { s.snap = [](const Point &x) { return x; }; }},
+              {"curve of 'obstacle' values",
+               [](Scene &s) { s.curves["obstacle"] = [](const Point &x) { return x; }; }},
               {"parameter radius", [](Scene &s) { s.parameters.all[0].valid.upper = 0.37; }}});
 }
 

@@ -1,6 +1,7 @@
 // What interfaces along polygonal curves in 2D share.
 #pragma once
 
+#include "rbvi/contact/facing.hpp"
 #include "rbvi/contact/interface.hpp"
 #include "rbvi/element/geometry.hpp"
 
@@ -106,6 +107,10 @@ CurveShape curve_shape(const InterfaceMesh &mesh, std::size_t part, const std::s
 ChainedEdges first_curve(const InterfaceMesh &mesh);
 /// Of all boundaries.
 std::size_t count_pieces(const InterfaceMesh &mesh);
+
+/// With the circular arcs through the ends and the middles of edges of degree 2, where a middle is
+/// off its edge (move_middles): Facing::on_curve.
+Facing on_arcs(Facing facing, const InterfaceMesh &mesh);
 
 /// Gram matrix in L2 of the hat functions of the polygon through `points`, `copies` blocks; of a
 /// body that is turned in L2 of the surface that it makes.

@@ -27,12 +27,17 @@ struct FacedPoint {
 };
 
 struct Facing {
+  /// Where a point of an edge is on the curve that the edge stands for (on_arcs), before anything
+  /// else is asked; empty: there.
+  std::function<Point(const Point &)> on_curve{};
   /// `displacement`: the state there, which the condition is linearised about; at rest ignored.
   std::function<FacedPoint(const FullMu &mu, const PlacedPoint &point, const Point &displacement)>
       at;
   /// The point that one of the reference boundary faces at rest, for pictures; empty: it lies along
   /// the normal.
   std::function<PointMap> partner{};
+  /// How far the displaced point is from what it really faces, at rest; empty: as far as `at` says.
+  std::function<double(const FullMu &mu, const Point &x, const Point &displacement)> distance{};
   /// The normal alone, for less work, where it does not depend on where the body is.
   Named<PointMap> normal{};
   bool asks_place = true; ///< whether `at` asks for PlacedPoint::y
@@ -46,8 +51,13 @@ struct Facing {
   bool along_body = false;
 };
 
+inline Point curve_point(const Facing &facing, const Point &x) {
+  return facing.on_curve ? facing.on_curve(x) : x;
+}
+
 inline PlacedPoint place(const Scene &scene, const Facing &facing, const FullMu &mu,
-                         const Point &x) {
+                         const Point &of_edge) {
+  const Point x = curve_point(facing, of_edge);
   PlacedPoint point{x, scene.motion ? scene.motion(mu, x) : Point{}};
   if (!facing.asks_place) return point;
   point.y = facing.at_rest ? facing.at_rest(mu, x) : scene.map(mu, x);
@@ -73,6 +83,8 @@ struct RigidContact {
   bool lumped;                                    ///< vertex quadrature
   Record record;                                  ///< by multipliers
   std::vector<ContactCoefficient> coefficients{}; ///< beside that of friction
+  /// Edges that are in a boundary of Scene::curves stand for its arcs (of degree 2).
+  bool curved = false;
 };
 
 } // namespace rbvi

@@ -174,6 +174,12 @@ public:
   /// `lambda`: a node with at most `least` counts as free.
   virtual void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                        double least, Outputs &outputs) const = 0;
+  /// Outputs::gap_error of an answer, 0 where contact follows the displacement or what is faced is
+  /// flat. `u`: as in fields().
+  virtual double gap_error(const FullMu & /*mu*/, const Vector & /*u*/,
+                           const Vector & /*lambda*/) const {
+    return 0;
+  }
   /// The mapped interface with its pressure, gap, normal (out of the body; of a membrane in space,
   /// downwards), to_partner, ...; no cell where nothing can touch. `u`: at its
   /// nodes, node * components + c, without the motion.
@@ -196,6 +202,25 @@ protected:
   const Scene &scene_;
   const InterfaceMesh mesh_;
   DualSpace dual_;
+};
+
+/// Outputs::gap_error from points: where they touch gaps differ, elsewhere deformed bodies overlap
+/// that the answer has apart.
+class GapErrors {
+public:
+  explicit GapErrors(const Vector &pressures)
+      : touching_(1e-3 * std::max(0.0, pressures.size() > 0 ? pressures.maxCoeff() : 0.0)) {}
+  /// `way`: along the normal; `left`: of the gap by small kinematics; `real`: that of the deformed
+  /// bodies.
+  void add(double pressure, double way, double left, double real) {
+    const bool touches = pressure > touching_;
+    error_ = std::max(error_, touches ? std::abs(real - left) : std::min(left, 0.0) - real);
+    approach_ = std::max(approach_, std::abs(way));
+  }
+  double largest() const { return approach_ > 0 ? error_ / approach_ : 0; }
+
+private:
+  double touching_, error_ = 0, approach_ = 0;
 };
 
 /// u at the columns that a mesh sees, zero at the others, from u at its nodes.

@@ -26,4 +26,9 @@ struct OutputSources {
 void add_named_outputs(const Scene &scene, const Contact &contact, const FullMu &mu,
                        const OutputSources &sources, const Vector &lambda, Outputs &outputs);
 
+/// Sets Outputs::gap_error, the largest of all interfaces, where the scene asks for it.
+void add_gap_error(const Scene &scene, const Contact &contact, const FullMu &mu,
+                   const std::function<Vector(std::size_t i)> &of_interface, const Vector &lambda,
+                   Outputs &outputs);
+
 } // namespace rbvi

@@ -22,7 +22,7 @@
 
 namespace rbvi {
 
-/// Of degree 2 Scene::snap brings the middles of edges onto the undeformed curves.
+/// Of degree 2 the middles of edges are on Scene::curves, undeformed.
 struct Pair {
   std::string slave, master; ///< boundaries
   PairDiscretisation discretisation{};

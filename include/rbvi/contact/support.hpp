@@ -95,6 +95,10 @@ Support support_in(const Stored &of);
 HalfPlane half_plane_in(const Stored &of);
 RigidSurface surface_in(const Stored &of);
 
+/// Outputs::gap_error at the vertices of a support: see ContactInterface::gap_error.
+double gap_error(const ContactInterface &interface, const Scene &scene, const Facing &facing,
+                 const FullMu &mu, const Vector &u, const Vector &lambda);
+
 /// The curve of a support with motion + u, gap, pressure and tangential stress; see
 /// ContactInterface::fields.
 Grid support_fields(const ContactInterface &interface, const Scene &scene, const Facing &facing,

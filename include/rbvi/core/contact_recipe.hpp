@@ -38,7 +38,7 @@ struct InterfaceEntities {
   Kind kind = Kind::cells;
   std::vector<std::string> parts;
   std::vector<int> components{}; ///< of the displacement that its kernels see; empty: all
-  bool snapped = false;          ///< Scene::snap brings the middles of edges onto the curves
+  bool snapped = false;          ///< Scene::curves: middles of edges are on them
 };
 
 /// A function of the parameters alone that an interface or its law is made of.

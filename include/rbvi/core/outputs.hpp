@@ -38,6 +38,10 @@ struct Outputs {
   std::optional<double> free_nodes, slip_directions;
   /// Likewise: max_penetration where it is beyond the round-off of the gaps.
   std::optional<double> overlap;
+  /// Likewise, of small kinematics (validity_warning): how far gaps where bodies touch are from
+  /// those between the deformed bodies, over the largest approach; the share of the body where a
+  /// strain or a rotation is above large_strain.
+  std::optional<double> gap_error, strained;
   std::optional<double> min_u;
   /// Residual of the problem that was solved, relative: stationarity, feasibility, complementarity;
   /// of a reduced answer that of the reduced problem, by Nitsche's method that of its equation.
@@ -112,15 +116,21 @@ void check_finite(const Outputs &outputs);
 /// though the bodies overlap, and how far it may be off; empty: nothing.
 std::string resolution_warning(const Outputs &outputs);
 
+/// A strain or a rotation, in radians, that linear elasticity is not for.
+constexpr double large_strain = 0.3;
+
+/// Why small kinematics do not hold at this answer; empty: they do.
+std::string validity_warning(const Outputs &outputs);
+
 /// The warnings of several answers.
 struct ResolutionTally {
-  long all = 0;                 ///< answers
-  long at_ends = 0;             ///< where contact reaches the end of its boundary
-  long coarse = 0;              ///< others with a warning
-  std::string first_end, first; ///< the first warning of each
+  long all = 0;                                ///< answers
+  long at_ends = 0;                            ///< where contact reaches the end of its boundary
+  long coarse = 0;                             ///< others with a warning
+  long invalid = 0;                            ///< where small kinematics do not hold
+  std::string first_end, first, first_invalid; ///< the first warning of each
   void add(const Outputs &outputs);
-  /// One line for those at the ends, one for the others, where there are any. `answers`: what they
-  /// are called.
+  /// One line for each of these, where there are any. `answers`: what they are called.
   void print(std::ostream &out, const char *answers = "answers") const;
 };
 

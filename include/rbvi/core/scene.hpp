@@ -50,8 +50,6 @@ struct MeshRecipe {
   std::string generator; ///< "square_with_disc", "two_quarter_discs", "two_blocks", "half_disc"...
   std::vector<std::string> regions;
   std::vector<std::string> boundaries;
-  /// Boundaries whose refined vertices Scene::snap brings back onto their curves.
-  std::vector<std::string> curved{};
   /// Edges of the contact boundary where the generator lets them be chosen; 0: its default.
   int edges = 0;
   std::vector<MeshFact> facts{}; ///< what a mesh must be beside the names above
@@ -156,9 +154,10 @@ struct Scene {
 
   /// h(mu), from the reference to the mapped domain.
   Named<PointMap> map;
-  /// Brings a refined vertex of the interface of the contact region, or of a curved boundary,
-  /// back onto the exact curve, the nearest one where there are several.
-  std::function<Point(const Point &)> snap;
+  /// The exact curve of a boundary, or of the rim of a region, by its name: brings a point beside
+  /// it onto it. Refined vertices and middles of edges are those of the curve of their own
+  /// boundary.
+  std::map<std::string, std::function<Point(const Point &)>> curves{};
 
   std::vector<FixedBoundary> fixed;
   std::vector<TiedBoundary> tied = {};
@@ -170,6 +169,8 @@ struct Scene {
   /// parameter `skewed_by`, if there is one, is fixed at zero; see is_symmetric.
   bool symmetric = false;
   int skewed_by = -1;
+  /// Small kinematics are meant, however far bodies move: nothing warns of them.
+  bool small = false;
   /// The domain is one of so many mirror images: energy, forces and measures are the whole's.
   double mirror_images = 1;
 

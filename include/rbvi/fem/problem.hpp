@@ -138,7 +138,12 @@ private:
   Operators operators_;
 };
 
-/// Sets Outputs::named of an answer whose u is at all dofs in natural order. Not collective.
+/// Outputs::strained of an answer whose u is at all dofs in natural order: by the gradient at the
+/// middle of each cell. Collective.
+double strained_share(const Problem &problem, const FullMu &mu, const Vector &u);
+
+/// Sets Outputs::named and gap_error of an answer whose u is at all dofs in natural order. Not
+/// collective.
 void add_named_outputs(const Problem &problem, const FullMu &mu, const Vector &u,
                        const Vector &lambda, Outputs &outputs);
 

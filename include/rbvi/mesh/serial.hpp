@@ -30,10 +30,13 @@ SerialMesh refined(const SerialMesh &mesh);
 /// refinement splits each of them in the same way.
 std::int64_t nodes_when_refined(const SerialMesh &mesh, int times, int degree);
 
-/// Moves by Scene::snap the vertices that the scene's contact region shares with the rest, and
-/// those of the boundaries that its recipe names as curved; onto its circle those of the rim of its
-/// inclusion.
+/// Moves the vertices of each of Scene::curves, of a region those that it shares with the rest,
+/// onto it, and those of the rim of the scene's inclusion onto its circle.
 void snap_curves(SerialMesh &mesh, const Scene &scene);
+
+/// Throws bad_input, naming `source` and the part, where a vertex of one of Scene::curves is
+/// farther than 1e-6 of the extent from it: refinement and contact would move it there.
+void check_curves(const SerialMesh &mesh, const Scene &scene, const std::string &source);
 
 /// Moves the vertices of the rim of the scene's inclusion (2D), which are on its circle, outwards
 /// by some h^2 / (12 radius), h the length of an edge: as much as gives the polygon the area of the
@@ -59,7 +62,7 @@ void check_places(const SerialMesh &mesh, const Scene &scene, const std::string 
 /// they are the surface, where the recipe says so; sizes are right; every cell is in a region of a;
 /// no facets lie on top of others without common nodes, unless they are a pair's; loads and contact
 /// are on the surface. For a mesh
-/// that is not refined: a rim that Scene::snap does not know is fitted by the file alone.
+/// that is not refined: a rim that Scene::curves does not have is fitted by the file alone.
 void check_facts(const SerialMesh &mesh, const Scene &scene, const std::string &source);
 
 /// The connected part of each cell, from 0 in the order of the cells; cells with a common vertex
