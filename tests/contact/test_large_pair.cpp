@@ -154,7 +154,7 @@ Curve circle(double centre, double radius, double side, Index edges) {
   return curve;
 }
 
-/// Middles of degree 2 on their circles, as Scene::snap brings them there.
+/// Middles of degree 2 on their circles, as Scene::curves has them.
 InterfaceMesh two_circles(Index edges, double gap, int degree) {
   InterfaceMesh mesh = two_curves(circle(2 + gap, 2, 1, edges), circle(-1, 1, -1, edges), degree);
   for (Index i = 0; i < mesh.nodes(); ++i) {
