@@ -161,8 +161,7 @@ std::string described(const std::vector<Foreign> &foreign, const Origin &case_fi
 /// A geometry becomes its mesh, in the run directory or for the moment.
 void mesh_geometry(MPI_Comm comm, const std::filesystem::path &out, Setup &setup) {
   if (!setup.mesh.file.ends_with(".geo")) return;
-  const std::filesystem::path folder =
-      out.empty() ? std::filesystem::temp_directory_path() / "rbvi_meshes" : out / "mesh";
+  const std::filesystem::path folder = out.empty() ? folder_of_meshes() : out / "mesh";
   const SceneEntry &entry = entry_of(*setup.registry, setup.scene.name);
   setup.mesh.file = meshed(comm, setup.mesh.file, entry.mesh_numbers, folder);
 }
