@@ -34,6 +34,24 @@ std::vector<std::string> names_of(const std::vector<Factor> &factors,
   return names;
 }
 
+/// The varying factors that every term has, a factor that they have twice twice.
+std::vector<Factor> common_factors(const Sum &sum, const ParameterSpace &space) {
+  if (sum.empty() || !std::ranges::all_of(sum, [](const Term &term) { return !!term.theta; }))
+    return {};
+  std::vector<Factor> common = *sum.front().theta;
+  std::erase_if(common, [&](const Factor &factor) { return !varies(factor, space); });
+  for (const Term &term : sum) {
+    std::vector<Factor> own = *term.theta;
+    std::erase_if(common, [&](const Factor &factor) {
+      const auto found = std::ranges::find(own, factor.name, &Factor::name);
+      const bool missing = found == own.end();
+      if (!missing) own.erase(found);
+      return missing;
+    });
+  }
+  return common;
+}
+
 const std::vector<Factor> &factors_of(const Sum &sum, int term) {
   return *sum[term].theta;
 }
@@ -99,6 +117,24 @@ std::vector<double> exact_coefficients(const Sum &sum, const SplitSum &split,
     result.push_back(product);
   }
   return result;
+}
+
+double common_coefficient(const Sum &sum, const ParameterSpace &space,
+                          const FullMu &all_parameters) {
+  double product = 1;
+  for (const Factor &factor : common_factors(sum, space))
+    product *= value_of(factor, space, all_parameters);
+  return product;
+}
+
+std::vector<int> parameters_beside_common(const Sum &sum, const ParameterSpace &space) {
+  Sum rest = sum;
+  for (const Factor &factor : common_factors(sum, space))
+    for (Term &term : rest)
+      term.theta->erase(std::ranges::find(*term.theta, factor.name, &Factor::name));
+  std::vector<int> parameters = space.free;
+  std::erase_if(parameters, [&](int i) { return !depends_on(rest, i); });
+  return parameters;
 }
 
 bool depends_on(const Sum &sum, int parameter) {

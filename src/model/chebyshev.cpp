@@ -16,13 +16,17 @@ double abscissa(int k, int points) {
 double value_at(const Scene &scene, const ChebyshevAxis &axis, int k) {
   const double x =
       (axis.lower + axis.upper) / 2 + (axis.upper - axis.lower) / 2 * abscissa(k, axis.points);
-  const Coordinate *coordinate = coordinate_of(scene, axis.parameter);
-  return coordinate == nullptr ? x : coordinate->back(x);
+  return value_back(scene, axis.parameter, x);
+}
+
+/// Of a modulus on [1, 3] the linear coordinate needs 17 points to 1e-9; beyond that the logarithm
+/// needs fewer.
+bool is_wide(const Parameter &parameter) {
+  return parameter.lower > 0 && parameter.upper > 3 * parameter.lower;
 }
 
 Vector axis_weights(const Scene &scene, const ChebyshevAxis &axis, double value) {
-  const Coordinate *own = coordinate_of(scene, axis.parameter);
-  const double coordinate = own == nullptr ? value : own->of(value);
+  const double coordinate = coordinate_at(scene, axis.parameter, value);
   const double x = (2 * coordinate - axis.lower - axis.upper) / (axis.upper - axis.lower);
   Vector weights = Vector::Zero(axis.points);
   for (int k = 0; k < axis.points; ++k) {
@@ -52,6 +56,16 @@ Matrix coefficients_of(int points) {
 }
 
 } // namespace
+
+double coordinate_at(const Scene &scene, int parameter, double value) {
+  if (const Coordinate *own = coordinate_of(scene, parameter)) return own->of(value);
+  return is_wide(scene.parameters.all[parameter]) ? std::log(value) : value;
+}
+
+double value_back(const Scene &scene, int parameter, double coordinate) {
+  if (const Coordinate *own = coordinate_of(scene, parameter)) return own->back(coordinate);
+  return is_wide(scene.parameters.all[parameter]) ? std::exp(coordinate) : coordinate;
+}
 
 Index grid_size(const std::vector<ChebyshevAxis> &axes) {
   Index size = 1;

@@ -14,7 +14,8 @@ namespace {
 /// The coefficient of each term of one block of the condensed operator.
 Vector block_coefficients(const CondensedOperator &condensed, const Scene &scene,
                           const FullMu &mu) {
-  return condensed.shape * grid_weights(scene, condensed.axes, mu);
+  return condensed.shape * grid_weights(scene, condensed.axes, mu) /
+         common_coefficient(scene.a, scene.parameters, mu);
 }
 
 /// Columns of a sum of m x m matrices, each of which is a column of `terms`.

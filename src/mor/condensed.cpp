@@ -14,6 +14,7 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <cstdio>
 #include <map>
 #include <numeric>
 #include <set>
@@ -28,16 +29,14 @@ namespace {
 constexpr double response_tolerance = 5e-7;
 constexpr int most_responses = 200; ///< factorisations
 
-/// The parameters of a that are free, each with so many points.
+/// The free parameters of A over its common coefficient, each with so many points.
 std::vector<ChebyshevAxis> axes_of(const Scene &scene, int points) {
   std::vector<ChebyshevAxis> axes;
-  for (const int i : scene.parameters.free) {
-    if (!depends_on(scene.a, i)) continue;
+  for (const int i : parameters_beside_common(scene.a, scene.parameters)) {
     const Parameter &p = scene.parameters.all[i];
-    const Coordinate *own = coordinate_of(scene, i);
-    const double lower = own == nullptr ? p.lower : own->of(p.lower);
-    const double upper = own == nullptr ? p.upper : own->of(p.upper);
-    axes.push_back({i, std::min(lower, upper), std::max(lower, upper), points});
+    const auto [lower, upper] =
+        std::minmax({coordinate_at(scene, i, p.lower), coordinate_at(scene, i, p.upper)});
+    axes.push_back({i, lower, upper, points});
   }
   return axes;
 }
@@ -284,8 +283,9 @@ private:
 };
 
 /// Values at a grid that is made finer along the axes that need it until the interpolant is right
-/// to the tolerance: their coordinates in the columns of `known`. `blocks_at`: at some mu, a column
-/// for each. Collective.
+/// to the tolerance, or has the most points along them: their coordinates in the columns of
+/// `known`. `blocks_at`: at some mu, a column for each, over the common coefficient of A^-1.
+/// Collective.
 template <class BlocksAt>
 Matrix values_on_grid(const Problem &problem, const FullMu &all, const CondensedOptions &options,
                       CondensedOperator &condensed, SpannedValues &known, BlocksAt &&blocks_at) {
@@ -297,17 +297,21 @@ Matrix values_on_grid(const Problem &problem, const FullMu &all, const Condensed
     Matrix coordinates = known.coordinates_at(grid);
     const Vector tails = chebyshev_tails(condensed.axes, coordinates);
     condensed.error = tails.size() > 0 ? tails.maxCoeff() : 0;
-    if (condensed.error <= options.tolerance) return coordinates;
+    bool finer = false;
     for (std::size_t d = 0; d < condensed.axes.size(); ++d) {
-      if (tails[d] <= options.tolerance) continue;
       ChebyshevAxis &axis = condensed.axes[d];
-      if (2 * axis.points - 1 > options.max_points)
-        throw failure("the condensed operator is interpolated to " + short_number(condensed.error) +
-                      " only by " + std::to_string(axis.points) + " points along " +
-                      scene.parameters.all[axis.parameter].name +
-                      ": narrow its bounds, or raise -condensed_tolerance");
+      if (tails[d] <= options.tolerance || 2 * axis.points - 1 > options.max_points) continue;
       axis.points = 2 * axis.points - 1;
+      finer = true;
     }
+    if (finer) continue;
+    if (condensed.error > options.tolerance && rank_of(problem.comm()) == 0)
+      std::fprintf(stderr,
+                   "rbvi: warning: the condensed operator is interpolated to %.1e only by %d points "
+                   "along a parameter of the stiffness: narrow its bounds, or raise "
+                   "-condensed_tolerance\n",
+                   condensed.error, options.max_points);
+    return coordinates;
   }
 }
 
@@ -342,6 +346,9 @@ Condensation condense(Problem &problem, const CondensedLoads &loads, const FullM
   const bool appends =
       modes != nullptr && (loads.join || !loads.dofs.empty()) && options.responses > 0;
   const SplitSum &split = problem.a_terms().split;
+  const auto common = [&](const Mu &mu) {
+    return common_coefficient(scene.a, scene.parameters, expand(scene.parameters, mu));
+  };
   Condensation result;
   CondensedOperator &condensed = result.condensed;
   constexpr double left_out = 1e-2; // of the tolerance
@@ -357,6 +364,7 @@ Condensation condense(Problem &problem, const CondensedLoads &loads, const FullM
           Matrix blocks = Matrix::Zero(size * size, std::ssize(set));
           take_turns(problem.comm(), set.size(), [&](std::size_t k) {
             blocks.col(static_cast<Index>(k)) =
+                common(set[k]) *
                 blocks_of(reduced.compliance(expand(scene.parameters, set[k])), size);
           });
           for (auto column : blocks.colwise())
@@ -372,7 +380,7 @@ Condensation condense(Problem &problem, const CondensedLoads &loads, const FullM
         values_on_grid(problem, all, options, condensed, known, [&](const std::vector<Mu> &set) {
           Matrix blocks;
           for (std::size_t k = 0; k < set.size(); ++k) {
-            const Vector column = exact.blocks_at(set[k]);
+            const Vector column = common(set[k]) * exact.blocks_at(set[k]);
             blocks.conservativeResize(column.size(), std::ssize(set));
             blocks.col(static_cast<Index>(k)) = column;
           }

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <map>
 #include <numbers>
@@ -52,8 +53,7 @@ Mu point_at(const Scene &scene, const std::vector<ChebyshevAxis> &axes, const Mu
   for (std::size_t d = 0; d < axes.size(); ++d) {
     const ChebyshevAxis &axis = axes[d];
     const double x = (axis.lower + axis.upper) / 2 + (axis.upper - axis.lower) / 2 * leja[index[d]];
-    const Coordinate *own = coordinate_of(scene, axis.parameter);
-    all[axis.parameter] = own == nullptr ? x : own->back(x);
+    all[axis.parameter] = value_back(scene, axis.parameter, x);
   }
   Mu mu;
   for (const int i : scene.parameters.free)
@@ -196,10 +196,15 @@ ResponseSpace append_fields(Problem &problem, const FieldSource &source,
   Index expected = 0;
   for (std::pair<MultiIndex, double> next{MultiIndex(axes.size(), 0), 1}; next.second > tolerance;
        next = grid.next()) {
-    if (result.points == most)
-      throw failure("the responses of the body are known to " + short_number(next.second) +
-                    " only after " + counted(most, "factorisation") +
-                    ": narrow the bounds of the parameters of the stiffness");
+    result.left = next.second;
+    if (result.points == most) {
+      if (rank_of(problem.comm()) == 0)
+        std::fprintf(stderr,
+                     "rbvi: warning: the responses of the body are known to %.1e only after %d "
+                     "factorisations: narrow the bounds of the parameters of the stiffness\n",
+                     result.left, most);
+      break;
+    }
     const Mu mu = point_at(problem.scene(), axes, next.first, leja, all_parameters);
     source.set(problem.assemble(mu));
     double longest = 0;
@@ -215,7 +220,6 @@ ResponseSpace append_fields(Problem &problem, const FieldSource &source,
     }
     grid.taken[next.first] = longest / scale;
     ++result.points;
-    result.left = next.second;
   }
   result.functions = static_cast<int>(basis.size() - before);
   return result;

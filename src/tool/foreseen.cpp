@@ -51,10 +51,9 @@ double largest(MPI_Comm comm, double value) {
   return value;
 }
 
-/// Free parameters of a.
+/// Free parameters that A is sampled over.
 int axes_of(const Scene &scene) {
-  return static_cast<int>(
-      std::ranges::count_if(scene.parameters.free, [&](int i) { return depends_on(scene.a, i); }));
+  return static_cast<int>(parameters_beside_common(scene.a, scene.parameters).size());
 }
 
 bool condenses(const OfflineOptions &options) {

@@ -88,6 +88,15 @@ SplitSum split_sum(const Sum &sum, const ParameterSpace &space);
 std::vector<double> exact_coefficients(const Sum &sum, const SplitSum &split,
                                        const ParameterSpace &space, const FullMu &all_parameters);
 
+/// The product of the varying factors that every term has: the sum is that times what is left of
+/// each term. 1 where they share none.
+double common_coefficient(const Sum &sum, const ParameterSpace &space,
+                          const FullMu &all_parameters);
+
+/// The free parameters, indices into parameters.all, that the sum over its common coefficient
+/// depends on.
+std::vector<int> parameters_beside_common(const Sum &sum, const ParameterSpace &space);
+
 /// Whether some term depends on a parameter, an index into parameters.all.
 bool depends_on(const Sum &sum, int parameter);
 

@@ -8,8 +8,14 @@
 
 namespace rbvi {
 
+/// The coordinate of a parameter in which A^-1 varies smoothly, and back: that which a factor of the
+/// scene's a gives it, else its logarithm where its range is wide and positive (A^-1 of a modulus
+/// is singular at 0 and below), else itself.
+double coordinate_at(const Scene &scene, int parameter, double value);
+double value_back(const Scene &scene, int parameter, double coordinate);
+
 /// One direction of the grid: `points` extremal Chebyshev points, from `upper` down to `lower`, in
-/// the coordinate that a factor of the scene's a gives the parameter. One point: the middle.
+/// the coordinate of the parameter. One point: the middle.
 struct ChebyshevAxis {
   int parameter = 0;           ///< index into all parameters
   double lower = 0, upper = 0; ///< of the coordinate

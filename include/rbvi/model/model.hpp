@@ -107,12 +107,12 @@ struct SelfCheck {
 };
 
 /// H = B A^-1 B^T on the columns of the dual basis (m of them), term by term:
-/// H(mu) = sum over t of coefficient_t(mu) terms_t. The terms come in blocks, one for each pair of
+/// H(mu) = sum over t of coefficient_t(mu) terms_t, over the common coefficient of a. The terms come in blocks, one for each pair of
 /// terms p <= q of b, of J terms each: coefficient = theta_p theta_q (shape w)_j, w the weights of
 /// the grid at mu. Where b does not separate, the terms are those of E^T A^-1 E on the contact dofs
 /// that the dual basis meets (m of them), in one block, and H = B (sum of terms) B^T.
 struct CondensedOperator {
-  std::vector<ChebyshevAxis> axes; ///< of the free parameters that a depends on
+  std::vector<ChebyshevAxis> axes; ///< of the free parameters of a over its common coefficient
   Matrix shape;                    ///< J x grid points
   Matrix terms;                    ///< m^2 x (blocks * J): symmetric matrices, column by column
   std::vector<int> dofs;           ///< where b does not separate: these contact dofs, rising
@@ -256,7 +256,7 @@ struct ReducedModel {
   bool evaluates_contact() const { return contact.b.size() == 0 && has_multipliers(); }
 };
 
-inline constexpr int model_schema = 21;
+inline constexpr int model_schema = 22;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (fields may all be empty).

@@ -61,9 +61,10 @@ CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
                                const std::vector<Mu> &training, const Matrix &multipliers,
                                const Matrix &basis);
 
-/// H = loads^T A^-1 loads in its blocks. One factorisation and a solve for each load
-/// at each Chebyshev point, shared among the ranks. Collective. Throws failure where the tolerance
-/// needs more points.
+/// H = loads^T A^-1 loads in its blocks, times the common coefficient of A. One factorisation and a
+/// solve for each load at each Chebyshev point, shared among the ranks. Collective. Where the
+/// tolerance needs more points than the most, says so on standard error, and the error stands in
+/// the operator.
 ///
 /// `modes`, where given: the responses A^-1 loads are appended to them, with A at the ends and in
 /// the middle of each of its free parameters, so that the displacement is as exact as the

@@ -30,8 +30,8 @@ struct ResponseSearch {
 
 /// Appends to `basis` what the responses to `loads` (contact dofs x m) have outside it, in the
 /// directions whose remainder, weighted, is above the tolerance. `weights`: m x any number,
-/// combinations of the loads that are as large as the multipliers can be. Collective. Throws
-/// failure where the most points do not reach the tolerance.
+/// combinations of the loads that are as large as the multipliers can be. Collective. Says so on
+/// standard error, and ends, where the most points do not reach the tolerance.
 ResponseSpace append_responses(Problem &problem, const Matrix &loads, const Matrix &weights,
                                const ResponseSearch &search, LinearBasis &basis);
 
