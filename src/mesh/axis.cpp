@@ -11,7 +11,7 @@ namespace rbvi {
 void mark_axis(Mesh &mesh) {
   std::vector<double> extent{0};
   for (const Point &x : mesh.points)
-    extent[0] = std::max({extent[0], std::abs(x[0]), std::abs(x[1])});
+    extent[0] = std::max(extent[0], std::abs(x[0]));
   over_ranks(mesh.comm, MPI_MAX, extent);
   std::vector<bool> &on = mesh.boundary[axis_of_turning];
   collectively(mesh.comm, [&] {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <numeric>
 #include <set>
 
@@ -57,18 +58,19 @@ Elements elements_of(const GmshFile &file, int dim) {
   return result;
 }
 
-/// Numbers of the groups with a name.
-std::set<int> groups_named(const GmshFile &file, int dim, const std::string &name) {
-  std::set<int> numbers;
-  for (const auto &[key, own] : file.names)
-    if (key.first == dim && own == name) numbers.insert(key.second);
-  return numbers;
+/// The name of a group; without one its number.
+std::string name_of(const GmshFile &file, int dim, int number) {
+  const auto name = file.names.find({dim, number});
+  return name == file.names.end() ? std::to_string(number) : name->second;
 }
 
 /// The elements in a group of that name.
 std::vector<std::size_t> members(const GmshFile &file, const Elements &elements, int dim,
                                  const std::string &name) {
-  const std::set<int> wanted = groups_named(file, dim, name);
+  std::set<int> wanted;
+  for (const std::vector<int> &list : file.groups)
+    std::ranges::copy_if(list, std::inserter(wanted, wanted.end()),
+                         [&](int group) { return name_of(file, dim, group) == name; });
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < elements.groups.size(); ++i)
     if (std::any_of(elements.groups[i].begin(), elements.groups[i].end(),
@@ -77,18 +79,22 @@ std::vector<std::size_t> members(const GmshFile &file, const Elements &elements,
   return found;
 }
 
-/// "'a', 'b', group 7 without a name": what cells and facets belong to.
-std::string groups_in(const GmshFile &file, int dim, const Elements &elements) {
+/// What elements belong to, each once, by the numbers of the groups.
+std::vector<std::string> names_in(const GmshFile &file, int dim, const Elements &elements) {
   std::set<int> numbers;
   for (const std::set<int> &own : elements.groups)
     numbers.insert(own.begin(), own.end());
-  std::string text;
-  for (const int number : numbers) {
-    const auto name = file.names.find({dim, number});
-    text += (text.empty() ? "" : ", ") +
-            (name == file.names.end() ? "group " + std::to_string(number) + " without a name"
-                                      : "'" + name->second + "'");
-  }
+  std::vector<std::string> names;
+  for (const int number : numbers)
+    if (std::string name = name_of(file, dim, number);
+        std::ranges::find(names, name) == names.end())
+      names.push_back(std::move(name));
+  return names;
+}
+
+/// "'a', '7'"
+std::string groups_in(const GmshFile &file, int dim, const Elements &elements) {
+  const std::string text = quoted(names_in(file, dim, elements));
   return text.empty() ? "none" : text;
 }
 
@@ -157,15 +163,14 @@ void check_names(const GmshFile &file, const Elements &cells, const Elements &fa
                   "); rbvi -help -case FILE lists what the mesh of a case needs");
 }
 
-/// A mesh of the plane lies in z = 0, but for round-off.
-void flatten(std::vector<Point> &points) {
-  double extent = 0;
-  for (const Point &x : points)
-    extent = std::max({extent, std::abs(x[0]), std::abs(x[1])});
-  for (Point &x : points) {
-    if (!(std::abs(x[2]) <= 1e-9 * extent))
+/// A mesh of the plane lies in one plane z = constant, but for round-off, and then in z = 0.
+void flatten(SerialMesh &mesh) {
+  const double extent = extent_of(mesh), z = mesh.points.front()[2];
+  for (Point &x : mesh.points) {
+    if (!(std::abs(x[2] - z) <= 1e-9 * extent))
       throw bad_input("has the vertex (" + short_number(x[0]) + ", " + short_number(x[1]) + ", " +
-                      short_number(x[2]) + "): scenes in two dimensions lie in z = 0");
+                      short_number(x[2]) + ") and one at z = " + short_number(z) +
+                      ": scenes in two dimensions lie in a plane z = constant");
     x[2] = 0;
   }
 }
@@ -179,7 +184,7 @@ SerialMesh mesh_of(const GmshFile &file, const Scene &scene) {
   SerialMesh mesh;
   mesh.dim = dim;
   mesh.points = vertices.points();
-  if (dim == 2) flatten(mesh.points);
+  if (dim == 2) flatten(mesh);
   for (const auto &nodes : cells.nodes) {
     std::array<int, 4> cell{-1, -1, -1, -1};
     for (int i = 0; i <= dim; ++i)
@@ -222,16 +227,11 @@ std::pair<std::vector<std::string>, std::vector<std::string>> parts_of_gmsh(cons
     return std::all_of(facets.nodes[facet].begin(), facets.nodes[facet].begin() + dim,
                        [&](std::size_t node) { return nodes.contains(node); });
   };
-  std::pair<std::vector<std::string>, std::vector<std::string>> parts;
-  for (const auto &[group, name] : content.names) {
-    if (group.first != dim && group.first != dim - 1) continue;
-    const bool region = group.first == dim;
-    std::vector<std::string> &names = region ? parts.first : parts.second;
-    const auto own = members(content, region ? cells : facets, group.first, name);
-    if (!own.empty() && (region || std::ranges::all_of(own, on_cells)) &&
-        std::ranges::find(names, name) == names.end())
-      names.push_back(name);
-  }
+  std::pair<std::vector<std::string>, std::vector<std::string>> parts{names_in(content, dim, cells),
+                                                                      {}};
+  for (std::string &name : names_in(content, dim - 1, facets))
+    if (std::ranges::all_of(members(content, facets, dim - 1, name), on_cells))
+      parts.second.push_back(std::move(name));
   return parts;
 }
 

@@ -120,9 +120,11 @@ std::vector<std::array<int, 2>> rim_edges(const SerialMesh &mesh, const std::str
 
 double extent_of(const SerialMesh &mesh) {
   double largest = 0;
-  for (const Point &x : mesh.points)
-    for (const double coordinate : x)
-      largest = std::max(largest, std::abs(coordinate));
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto [low, high] =
+        std::ranges::minmax(mesh.points, {}, [c](const Point &x) { return x[c]; });
+    largest = std::max(largest, high[c] - low[c]);
+  }
   return largest;
 }
 

@@ -1,10 +1,12 @@
 #include "rbvi/scene/document.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -104,21 +106,39 @@ bool open_quote(const std::string &line) {
   return line.find(line[begin], begin + 1) == std::string::npos;
 }
 
-/// YAML folds further lines into a value, which nobody means.
+std::size_t indent_of(const std::string &line) {
+  return std::min(line.find_first_not_of(" \t\r"), line.size());
+}
+
+/// Whether a text begins behind this line, folded (>) or as it is (|).
+bool opens_text(const std::string &line) {
+  const std::string code = trimmed(line.substr(0, line.find(" #")));
+  const std::size_t mark = code.find_last_not_of("+-123456789");
+  return mark != std::string::npos && (code[mark] == '>' || code[mark] == '|') &&
+         trimmed(code.substr(0, mark)).ends_with(':');
+}
+
+/// YAML folds further lines into a value, which nobody means without the mark of a text.
 void check_lines(const std::string &text, const YAML::Node &root, const std::string &file) {
   std::set<int> begun;
   collect_lines(root, begun);
   std::istringstream in(text);
   int number = 0;
+  std::optional<std::size_t> text_of; // how far the line is indented that a text belongs to
   for (std::string line; std::getline(in, line);) {
     ++number;
-    const std::size_t first = line.find_first_not_of(" \t\r");
-    if (first == std::string::npos || line[first] == '#' || line[first] == '%') continue;
+    const std::size_t first = indent_of(line);
+    if (first == line.size() || (text_of && first > *text_of)) continue;
+    text_of.reset();
+    if (line[first] == '#' || line[first] == '%') continue;
+    if (opens_text(line)) text_of = first;
     if (open_quote(line)) throw malformed(file, number, "a quote is not closed");
     const bool idle = line.starts_with("---") || line.starts_with("...") ||
                       line.find_first_not_of("[]{}, \t\r") == std::string::npos;
     if (!idle && !begun.contains(number))
-      throw malformed(file, number, "it belongs to no name: write 'name: value'");
+      throw malformed(file, number,
+                      "it belongs to no name: write 'name: value', or 'name: >' before a text of "
+                      "several lines");
   }
 }
 
@@ -154,8 +174,10 @@ CaseNode node_of(const YAML::Node &yaml, const std::string &file) {
       node.items.push_back(node_of(item, file));
   } else if (yaml.IsScalar()) {
     node.value = yaml.Scalar();
+    if (node.value.ends_with('\n')) node.value.pop_back(); // of a folded text
     if (node.value.find_first_of("\r\n") != std::string::npos)
-      throw malformed(file, node.line, "a value goes over several lines");
+      throw malformed(file, node.line,
+                      "a value goes over several lines: fold it ('name: >'), without empty ones");
   }
   return node;
 }

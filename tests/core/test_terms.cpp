@@ -55,6 +55,22 @@ TEST(SplitSum, TheConstantGroupIsFirst) {
   EXPECT_TRUE(split.exact.front().factors.empty());
 }
 
+TEST(CommonCoefficient, IsTheProductOfTheFactorsOfEveryTerm) {
+  Sum sum = four_terms();
+  const FullMu mu{3, 0.3};
+  EXPECT_EQ(common_coefficient(sum, space({kappa, nu}), mu), 1);
+  EXPECT_EQ(parameters_beside_common(sum, space({kappa, nu})), (std::vector<int>{kappa, nu}));
+  sum.erase(sum.begin(), sum.begin() + 2);
+  EXPECT_EQ(common_coefficient(sum, space({kappa, nu}), mu), 3);
+  EXPECT_EQ(common_coefficient(sum, space({nu}), mu), 1) << "kappa is fixed";
+  EXPECT_EQ(parameters_beside_common(sum, space({kappa, nu})), std::vector<int>{nu});
+  (*sum[0].theta).push_back((*sum[0].theta)[0]);
+  EXPECT_EQ(common_coefficient(sum, space({kappa, nu}), mu), 3) << "twice in one term alone";
+  EXPECT_EQ(parameters_beside_common(sum, space({kappa, nu})), (std::vector<int>{kappa, nu}));
+  sum.push_back(mapped_term({}, std::vector<int>{nu}));
+  EXPECT_EQ(common_coefficient(sum, space({kappa, nu}), mu), 1);
+}
+
 TEST(SplitSum, TheOrderOfFactorsDoesNotMatter) {
   Sum sum = four_terms();
   std::swap((*sum[2].theta)[0], (*sum[2].theta)[1]);

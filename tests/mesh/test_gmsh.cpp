@@ -291,7 +291,7 @@ TEST_P(Encodings, MissingNamesAreListedAtOnceWithThoseThatExist) {
   const TemporaryFile file(written(drawing, GetParam()));
   expect_refused(file.name(), "no physical region 'obstacle' of cells and no physical boundary "
                               "'boundary' of facets");
-  expect_refused(file.name(), "it has: cells in group 1 without a name, 'rest', 'all'; facets in "
+  expect_refused(file.name(), "it has: cells in '1', 'rest', 'all'; facets in "
                               "'two sides', 'wall'");
 }
 
@@ -309,11 +309,39 @@ TEST_P(Encodings, PointsOutOfThePlaneOrNotANumberAreRefused) {
   drawing.points[17][2] = 0.01;
   {
     const TemporaryFile file(written(drawing, GetParam()));
-    expect_refused(file.name(), "z = 0");
+    expect_refused(file.name(), "plane z = constant");
   }
   drawing.points[17] = {std::nan(""), 0, 0};
   const TemporaryFile file(written(drawing, GetParam()));
   expect_refused(file.name(), "node 39 is not finite");
+}
+
+TEST_P(Encodings, GroupsWithoutANameGoByTheirNumber) {
+  GmshDrawing drawing = membrane();
+  drawing.names.erase({2, 1});
+  Scene numbered = scene;
+  std::ranges::replace(numbered.mesh.regions, std::string("obstacle"), std::string("1"));
+  const TemporaryFile file(written(drawing, GetParam()));
+  EXPECT_EQ(read_gmsh(file.name(), numbered).region.at("1"),
+            square_with_disc().region.at("obstacle"));
+  EXPECT_EQ(parts_of_gmsh(file.name(), 2).first.front(), "1");
+}
+
+/// A mesh keeps its digits wherever it lies, and its plane is that of the scene.
+TEST(Gmsh, TheOriginIsAnywhere) {
+  const Scene scene = make_scene("membrane_obstacle", {{"lumped", "no"}});
+  const auto print_of = [&](const Point &origin, double moved) {
+    GmshDrawing drawing = membrane();
+    drawing.points.back()[0] += moved;
+    for (Point &x : drawing.points)
+      x = x + origin;
+    const TemporaryFile file(written(drawing, {"4.1", false}));
+    return fingerprint_of(read_gmsh(file.name(), scene));
+  };
+  EXPECT_EQ(print_of({0, 0, 5}, 0), print_of({}, 0));
+  const Point far{5e5, 4.5e6, 0};
+  EXPECT_EQ(print_of(far, 1e-9), print_of(far, 0));
+  EXPECT_NE(print_of(far, 1e-5), print_of(far, 0));
 }
 
 TEST_P(Encodings, AnElementOfANodeThatIsNotThereIsRefused) {

@@ -50,6 +50,12 @@ TEST(CaseFile, ValuesAreTextAsItStands) {
   EXPECT_EQ(read("out: r\xc3\xa9sultats\n"), "1:out=r\xc3\xa9sultats;");
 }
 
+TEST(CaseFile, TextsMayBeFolded) {
+  EXPECT_EQ(read("a: >\n  x: \"y\n  # z\nb: 1\n"), "1:a=x: \"y # z;4:b=1;");
+  EXPECT_EQ(read("a: >- # two lines\n  x\n  y\n"), "1:a=x y;");
+  EXPECT_EQ(read("a: |\n  x\n"), "1:a=x;");
+}
+
 TEST(CaseFile, MistakesHaveTheirLine) {
   const std::pair<std::string, std::string> mistakes[] = {
       {"a: 1\nb: 2\na: 3\n", "3: a is given again, after line 1"},
@@ -73,7 +79,9 @@ TEST(CaseFile, MistakesHaveTheirLine) {
       {"a: 1\nb: \"x\nc: 2\n", "2: a quote is not closed"},
       {"a: 1\n  b\nc: 2\n", ""},
       {"a: x\n  y\n", "2: it belongs to no name"},
-      {"a: |\n  x\n  y\n", "2: it belongs to no name"},
+      {"a: x >\n  y\n", "2: it belongs to no name"},
+      {"a: |\n  x\n  y\n", "1: a value goes over several lines"},
+      {"a: >\n  x\n b: 1\nc\n", "4: "},
       {"a: 1\n---\nb: 2\n", "3: a second document begins"},
       {"  a: 1\n b: 2\n", "2: "},
       {"a: 1\nb: \xff\xfe\n", "2: a byte is no UTF-8 text"},

@@ -69,7 +69,7 @@ void check_facts(const SerialMesh &mesh, const Scene &scene, const std::string &
 /// are connected.
 std::vector<int> bodies_of(const SerialMesh &mesh);
 
-/// Largest coordinate, without its sign.
+/// The longest side of its box, wherever that lies.
 double extent_of(const SerialMesh &mesh);
 
 /// Hash of points (to 6e-8 of the mesh's extent: the last digits depend on the processor), cells,
