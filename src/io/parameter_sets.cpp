@@ -122,8 +122,9 @@ class CsvRows {
 public:
   /// `row`: where the text of each row goes.
   CsvRows(const ParameterSpace &space, std::string name, std::istream &in, bool allow_outside,
-          RowText &row)
-      : space_(space), name_(std::move(name)), in_(in), allow_outside_(allow_outside), row_(row) {
+          const std::vector<OutputForm> &own, RowText &row)
+      : space_(space), name_(std::move(name)), in_(in), allow_outside_(allow_outside), own_(own),
+        row_(row) {
     std::string line;
     if (!next_line(line)) throw no_rows();
     while_doing(reading(), [&] { read_header(line); });
@@ -164,7 +165,7 @@ private:
       const std::optional<std::size_t> i = find_free(space_, name);
       if (!i && name == id_name && !id_)
         id_ = columns_.size();
-      else if (!i && !is_table_column(name))
+      else if (!i && !is_passed_over(name))
         throw unknown_parameter(space_, name);
       if (i && found[*i]) throw bad_input("two columns are named '" + name + "'");
       if (i) found[*i] = true;
@@ -172,6 +173,11 @@ private:
     }
     if (std::find(found.begin(), found.end(), false) != found.end())
       throw bad_input("the header must name every free parameter: " + names_of(space_));
+  }
+  bool is_passed_over(const std::string &name) const {
+    return is_table_column(name) || std::ranges::any_of(own_, [&](const OutputForm &form) {
+             return name == form.name || name == form.name + "_error";
+           });
   }
   Mu read_row(const std::string &line) {
     row_ = {"", std::vector<std::string>(space_.size())};
@@ -194,6 +200,7 @@ private:
   std::string name_;
   std::istream &in_;
   bool allow_outside_;
+  std::vector<OutputForm> own_;
   RowText &row_;
   std::vector<std::optional<std::size_t>> columns_; ///< free parameter of each column, if any
   std::optional<std::size_t> id_;                   ///< column of ids
@@ -216,7 +223,7 @@ std::shared_ptr<std::ifstream> opened(const ParameterSpace &space, const std::st
 } // namespace
 
 ParameterReader::ParameterReader(const ParameterSpace &space, const std::string &text,
-                                 bool allow_outside) {
+                                 bool allow_outside, const std::vector<OutputForm> &own) {
   const std::size_t part = is_set_file(text) ? std::string::npos : text.find(within);
   if (part != std::string::npos) {
     next_ = ParameterReader(narrowed(space, text.substr(part + within.size())),
@@ -235,14 +242,14 @@ ParameterReader::ParameterReader(const ParameterSpace &space, const std::string 
   } else {
     const std::shared_ptr<std::ifstream> file = opened(space, text);
     const auto rows = std::make_shared<CsvRows>(space, file ? text : "standard input",
-                                                file ? *file : std::cin, allow_outside, *row_);
+                                                file ? *file : std::cin, allow_outside, own, *row_);
     has_ids_ = rows->has_ids();
     next_ = [file, rows, row = row_] { return rows->next(); };
   }
 }
 
-std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text,
-                          bool allow_outside) {
+std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text, bool allow_outside,
+                          const std::vector<OutputForm> &own) {
   std::vector<Mu> set;
   for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + plus.size()) {
     end = text.find(plus, begin);
@@ -252,7 +259,7 @@ std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text,
       throw bad_input("'" + part + "' in '" + text +
                       "': a sum is of grids, random points and "
                       "corners; put them into the file");
-    ParameterReader reader(space, part, allow_outside);
+    ParameterReader reader(space, part, allow_outside, own);
     while (std::optional<Mu> mu = reader.next())
       set.push_back(std::move(*mu));
   }

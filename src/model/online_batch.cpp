@@ -116,9 +116,9 @@ private:
 };
 
 /// The number of queries, each of which is read and checked; 0 for a stream.
-long count_queries(const OnlineArguments &arguments, const ParameterSpace &space) {
+long count_queries(const OnlineArguments &arguments, const Scene &scene) {
   if (is_stream(arguments.queries)) return 0;
-  ParameterReader reader(space, arguments.queries, arguments.extrapolate);
+  ParameterReader reader(scene.parameters, arguments.queries, arguments.extrapolate, scene.outputs);
   long count = 0;
   while (reader.next())
     ++count;
@@ -224,9 +224,10 @@ void warn_of_unvalidated(long answers, std::ostream &out) {
 }
 
 void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::ostream &out) {
-  const ParameterSpace &space = solver.scene().parameters;
-  const long total = count_queries(arguments, space);
-  ParameterReader reader(space, arguments.queries, arguments.extrapolate);
+  const Scene &scene = solver.scene();
+  const ParameterSpace &space = scene.parameters;
+  const long total = count_queries(arguments, scene);
+  ParameterReader reader(space, arguments.queries, arguments.extrapolate, scene.outputs);
   const bool to_file = !arguments.out.empty() && arguments.out != "-";
   Tally tally;
   tally.contact_points = material_points(solver.contact());

@@ -289,6 +289,7 @@ std::string scene_text(const Scene &scene, const Contact &contact) {
   Text text(scene, contact);
   add_parameters(scene, text);
   Record record = record_of(scene);
+  record.name = "scene";         // whatever its folder is called
   record.parts.erase("check");   // refuses parameters, and changes no answer
   record.numbers.erase("small"); // nor does what warnings there are
   std::erase_if(record.parts, [](const auto &part) { return part.first.starts_with("output_"); });

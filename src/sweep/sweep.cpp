@@ -319,7 +319,7 @@ std::vector<ContactPoint> contact_points(const std::vector<Sample> &samples) {
 
 Settings sample_settings(const Problem &problem, const HfOptions &options) {
   const Scene &scene = problem.scene();
-  Settings settings{{"scene", scene.name}, {"mesh", problem.mesh().fingerprint}};
+  Settings settings{{"mesh", problem.mesh().fingerprint}};
   for (const auto &[name, value] : scene.options)
     settings[name] = value;
   for (std::size_t i = 0; i < scene.parameters.all.size(); ++i) {

@@ -266,7 +266,9 @@ void command_check(const MeasureOptions &options, const SolveOptions &solve) {
   Unheld unheld = check_points(problem);
   collectively(world, [&] {
     for (const std::string &set : {options.train, options.valid})
-      if (!set.empty()) check_set(problem.scene(), parse_set(problem.scene().parameters, set));
+      if (!set.empty())
+        check_set(problem.scene(),
+                  parse_set(problem.scene().parameters, set, false, problem.scene().outputs));
   });
   const Mu mu = box_centre(problem.scene().parameters);
   const std::string at = short_text(problem.scene().parameters, mu);

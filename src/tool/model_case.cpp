@@ -47,7 +47,8 @@ bool other_training(const OfflineOptions &options, const ReducedModel &model) {
   for (Mu &mu : from_columns(model.made.failed_mu))
     own.push_back(std::move(mu));
   try {
-    std::vector<Mu> given = parse_set(options.scene.parameters, options.train);
+    std::vector<Mu> given =
+        parse_set(options.scene.parameters, options.train, false, options.scene.outputs);
     std::sort(given.begin(), given.end());
     std::sort(own.begin(), own.end());
     return given != own;
@@ -112,11 +113,15 @@ ReducedModel model_of_run(MPI_Comm world, const OfflineOptions &options) {
 
 MeasureOptions adopt_model(MeasureOptions options, const ReducedModel &model) {
   const OfflineOptions given = options;
-  if (model.scene.name != options.scene.name)
+  Scene stored = model.scene;
+  stored.name = options.scene.name; // that of a folder, which may be renamed
+  try {
+    options.scene = scene_by_code(stored, *options.registry);
+  } catch (const Error &error) {
     throw bad_input("the model in " + options.out.string() + " is one of scene " +
-                    model.scene.name + ", the case names " + options.scene.name +
-                    ": leave out -case, or use another -out");
-  options.scene = scene_by_code(model.scene, *options.registry);
+                    model.scene.name + ", the case names " + stored.name +
+                    ": leave out -case, or use another -out (" + error.what() + ")");
+  }
   options.mesh = mesh_of(model, options.mesh);
   std::string line;
   for (const std::string &difference : differences(given, options, model))
@@ -127,7 +132,8 @@ MeasureOptions adopt_model(MeasureOptions options, const ReducedModel &model) {
 }
 
 std::vector<Mu> validation_set(const MeasureOptions &options, const ReducedModel &model) {
-  std::vector<Mu> set = parse_set(options.scene.parameters, options.valid);
+  std::vector<Mu> set =
+      parse_set(options.scene.parameters, options.valid, false, options.scene.outputs);
   check_set(options.scene, set);
   const std::vector<Mu> list = from_columns(model.made.trained_mu);
   const std::set<Mu> trained(list.begin(), list.end());

@@ -72,7 +72,8 @@ void tell_of_errors(const ReducedModel &model, const std::filesystem::path &run)
 } // namespace
 
 std::vector<Mu> checked_training(const OfflineOptions &options) {
-  std::vector<Mu> training = parse_set(options.scene.parameters, options.train);
+  std::vector<Mu> training =
+      parse_set(options.scene.parameters, options.train, false, options.scene.outputs);
   check_set(options.scene, training);
   check_reduction(options.scene, options.reduce);
   check_eigen_options(options, EigenUse::supremizers);

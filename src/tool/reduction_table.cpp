@@ -46,7 +46,7 @@ Option nitsche_eim_validation(const Scene &scene, std::vector<Mu> &place) {
                 "set"};
   option.read = [&](const std::string &value) {
     place = while_doing("reading option -nitsche_eim_validation",
-                        [&] { return parse_set(scene.parameters, value); });
+                        [&] { return parse_set(scene.parameters, value, false, scene.outputs); });
   };
   return option;
 }

@@ -152,6 +152,12 @@ TEST_F(CsvSet, PassesOverTheOtherColumnsOfATable) {
             (std::vector<Mu>{{0.2, 0.01}, {0.16, 0}}));
 }
 
+TEST_F(CsvSet, PassesOverOutputsOfTheSceneAlone) {
+  std::ofstream(name) << "radius,push,x,push_error\n0.2,7,0.01,1e-3\n0.16,,0,\n";
+  EXPECT_EQ(parse_set(space(), name, false, {{"push"}}), (std::vector<Mu>{{0.2, 0.01}, {0.16, 0}}));
+  EXPECT_TRUE(refuses("push", [&] { (void)parse_set(space(), name, false, {{"pull"}}); }));
+}
+
 TEST_F(CsvSet, IsReadRowByRowAndGoesOnBehindAWrongOne) {
   std::ofstream(name) << "radius,x\n0.2,0\n0.9,0\n0.16,0.01\n";
   const ParameterSpace box = space();

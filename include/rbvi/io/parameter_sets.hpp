@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rbvi/core/parameters.hpp"
+#include "rbvi/core/scene.hpp"
 #include "rbvi/io/output_table.hpp"
 
 #include <functional>
@@ -14,17 +15,18 @@ namespace rbvi {
 /// "random:200:seed" or "200" for seed 1 (uniform, the same on every machine), "corners"
 /// (corners_and_faces), several of these with " + " between them, grid and random also in a part of
 /// the box, "grid:61 in radius=0.7,1.15", or the name of a CSV file with a header of parameter
-/// names, in any order; columns that a table of rbvi has beside them (is_table_column) are passed
-/// over. Every mu is checked. Throws bad_input, naming the line.
+/// names, in any order; columns that a table of rbvi has beside them (is_table_column, and `own`
+/// outputs of the scene) are passed over. Every mu is checked. Throws bad_input, naming the line.
 std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text,
-                          bool allow_outside = false);
+                          bool allow_outside = false, const std::vector<OutputForm> &own = {});
 
 /// A set one by one, in constant memory; "-" is a CSV table on standard input. A column `id` of a
 /// table is no parameter, and is handed on.
 class ParameterReader {
 public:
   /// `space` must outlive it. Throws bad_input for a set that cannot be read from the beginning.
-  ParameterReader(const ParameterSpace &space, const std::string &text, bool allow_outside = false);
+  ParameterReader(const ParameterSpace &space, const std::string &text, bool allow_outside = false,
+                  const std::vector<OutputForm> &own = {});
   /// The next one, nothing at the end. Throws bad_input, naming the line, for a row that is none;
   /// the rows behind it can still be read.
   std::optional<Mu> next() { return next_(); }
