@@ -5,7 +5,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 packages=(g++ cmake ninja-build pkg-config petsc-dev slepc-dev libopenmpi-dev openmpi-bin libmetis-dev
   libhdf5-dev libhdf5-openmpi-dev libeigen3-dev libopenblas-dev libyaml-cpp-dev libgtest-dev
   libmuparser-dev python3-numpy python3-scipy python3-matplotlib python3-h5py python3-jsonschema
-  python3-yaml)
+  python3-yaml
+  gmsh) # meshes the cases bolted_flange, bracket, joint and seal, whose tests are left out without it
 
 # Root in a container and more ranks than cores are both refused by Open MPI unless it is told.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1

@@ -32,35 +32,28 @@ validate: random:20:1
 )";
 }
 
-std::string new_case(const std::string &mesh, const std::vector<std::string> &regions,
-                     const std::vector<std::string> &boundaries) {
-  const auto list = [](const std::vector<std::string> &names) {
-    return names.empty() ? std::string("none") : joined(names);
-  };
-  const std::string first = boundaries.empty() ? "BOUNDARY" : boundaries.front(),
-                    last = boundaries.empty() ? "BOUNDARY" : boundaries.back();
-  return "# All keys: cases/OPTIONS.md, Case files. Regions of the mesh: " + list(regions) +
-         "; boundaries: " + list(boundaries) + R"(.
+std::string new_case(const std::string &mesh, const std::string &parts, const std::string &imposed,
+                     const std::string &contact, double depth) {
+  const std::string range = "[" + short_number(depth / 10) + ", " + short_number(depth) + "]";
+  return "# All keys: cases/OPTIONS.md, Case files. " + parts + R"(
 rbvi: 1
 physics: plane_strain
 mesh: {file: )" +
          mesh + R"(, degree: 2}
 
 parameters: # what has a range can vary; what has none is a constant that a run may change
-  depth: {range: [0.01, 0.1], default: 0.05, says: how far the body is pushed down}
+  depth: {range: )" +
+         range + ", default: " + short_number(depth / 2) +
+         R"(, says: how far the body is pushed down}
   young: {default: 1, says: Young's modulus}
 
 materials:
   body: {at: all, E: young, nu: 0.3}
 imposed: # a component that is absent is free
-  held: {at: )" +
-         first + R"(, ux: 0, uy: -depth}
-contact:
-  floor: # n: out of the body; the plane lies at x . n = position
-    at: )" +
-         last + R"(
-    against: {plane: {normal: [0, -1], position: 0}}
-
+)" + imposed +
+         R"(contact: # a normal points out of the body; the plane lies at x . normal = position
+)" + contact +
+         R"(
 train: grid:5
 validate: random:20:1
 )";

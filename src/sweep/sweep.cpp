@@ -348,6 +348,10 @@ fs::path sample_file(const fs::path &directory, const Mu &mu) {
   return directory / name;
 }
 
+void check_samples(const Problem &problem, const HfOptions &options, const fs::path &directory) {
+  check_directory(directory, sample_settings(problem, options));
+}
+
 Sweep run_sweep(MPI_Comm world, const Groups &groups, Problem &problem, const HfOptions &options,
                 const std::vector<Mu> &set, const SampleStore &store) {
   const Wanted wanted{set, store, sample_settings(problem, options)};

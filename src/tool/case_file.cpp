@@ -75,11 +75,14 @@ std::string case_line(const std::string &name, const std::string &value) {
                     !value.starts_with('=') && !value.starts_with(',') && value != "-" &&
                     value != "null" && value != "Null" && value != "NULL" &&
                     !value.starts_with("---");
-  if (bare) return name + ": " + value + "\n";
+  return name + ": " + (bare ? value : in_quotes(value)) + "\n";
+}
+
+std::string in_quotes(const std::string &text) {
   std::string quoted;
-  for (const char c : value)
+  for (const char c : text)
     quoted += c == '\'' ? std::string("''") : std::string(1, c);
-  return name + ": '" + quoted + "'\n";
+  return "'" + quoted + "'";
 }
 
 std::string read_case_text(MPI_Comm comm, const std::filesystem::path &file) {

@@ -1,10 +1,9 @@
-// rbvi check: a case before anything is made of it. rbvi new: a case to begin with.
+// rbvi check: a case before anything is made of it.
 #include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/fem/check_scene.hpp"
-#include "rbvi/io/write_atomically.hpp"
 #include "rbvi/mesh/contact_curves.hpp"
 #include "rbvi/mesh/serial.hpp"
 #include "rbvi/mesh/surface.hpp"
@@ -221,14 +220,6 @@ void try_free_bodies(Problem &problem, HighFidelity &solver, Unheld &unheld) {
   }
 }
 
-/// The physical groups of a mesh as a case in a folder.
-std::string case_of_mesh(const std::string &mesh, const fs::path &folder) {
-  const auto [regions, boundaries] = parts_of_gmsh(mesh, 2);
-  const fs::path beside =
-      fs::absolute(mesh).lexically_normal().lexically_relative(fs::absolute(folder));
-  return new_case(beside.string(), regions, boundaries);
-}
-
 /// Every variant of the case can be read.
 void check_variants(const MeasureOptions &options) {
   const SceneEntry &entry = entry_of(*options.registry, options.scene.name);
@@ -291,15 +282,6 @@ void command_check(const MeasureOptions &options, const SolveOptions &solve) {
     std::printf("no defect was found\n");
   }
   if (solve.run_tests) run_tests(options);
-}
-
-void command_new(const std::string &name, const std::string &mesh) {
-  const fs::path file = fs::path(name) / "case.yaml";
-  if (fs::exists(file)) throw bad_input(file.string() + " is there already: give another name");
-  const std::string text = mesh.empty() ? new_case() : case_of_mesh(mesh, name);
-  make_directory(name);
-  write_atomically(file, text);
-  std::printf("wrote %s: rbvi check %s\n", file.c_str(), file.c_str());
 }
 
 } // namespace rbvi

@@ -52,7 +52,7 @@ const std::vector<Command> &commands() {
       {"solve", "one high-fidelity solve at -mu", "rbvi solve -case FILE -mu VALUES [options]"},
       {"bench", "run time against error", "rbvi bench -out DIRECTORY [options]"},
       {"check", "a case, before anything is made of it", "rbvi check FILE [options]"},
-      {"new", "a case to begin with, in a folder of its own", "rbvi new NAME [-mesh FILE.msh]"},
+      {"new", "a case to begin with, in a folder of its own", "rbvi new NAME [-mesh FILE]"},
       {"list", "the cases of a folder, by default of cases", "rbvi list [FOLDER]"},
       {"inspect", "what a model file holds", "rbvi inspect FILE"}};
   return all;

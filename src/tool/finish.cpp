@@ -61,7 +61,7 @@ std::string take_word(Invocation &result, std::vector<std::string> &given) {
     given.resize(2);
   }
   if (command == "new" && (given.size() != 2 || !word))
-    return "new takes the name of a folder: rbvi new my_case [-mesh FILE.msh]";
+    return "new takes the name of a folder: rbvi new my_case [-mesh FILE]";
   if (command == "inspect" && given.size() != 2)
     return "inspect takes one model file: rbvi inspect run/obstacle/model.h5";
   if (command == "list" && !word && given.size() == 1) given.emplace_back("cases");

@@ -91,6 +91,9 @@ OfflinePlan plan_offline(MPI_Comm world, const Groups &groups, const OfflineOpti
   Workspace work = timed(before, stage::mesh, [&] { return Workspace(world, groups, options); });
   HfOptions hf = options.hf;
   hf.samples = static_cast<int>(training.size()) / groups.count();
+  collectively(world, [&] {
+    if (!options.out.empty()) check_samples(work.group_problem(), hf, options.out / "samples");
+  });
   const RunSizes sizes = sizes_of(world, work.group_problem(), hf, counted);
   return {stages,         std::move(before), std::move(work), hf, foresee(options, training, sizes),
           room_for(world)};

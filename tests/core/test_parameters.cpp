@@ -154,8 +154,11 @@ TEST_F(CsvSet, PassesOverTheOtherColumnsOfATable) {
 
 TEST_F(CsvSet, PassesOverOutputsOfTheSceneAlone) {
   std::ofstream(name) << "radius,push,x,push_error\n0.2,7,0.01,1e-3\n0.16,,0,\n";
-  EXPECT_EQ(parse_set(space(), name, false, {{"push"}}), (std::vector<Mu>{{0.2, 0.01}, {0.16, 0}}));
-  EXPECT_TRUE(refuses("push", [&] { (void)parse_set(space(), name, false, {{"pull"}}); }));
+  std::vector<OutputForm> own(1);
+  own.front().name = "push";
+  EXPECT_EQ(parse_set(space(), name, false, own), (std::vector<Mu>{{0.2, 0.01}, {0.16, 0}}));
+  own.front().name = "pull";
+  EXPECT_TRUE(refuses("push", [&] { (void)parse_set(space(), name, false, own); }));
 }
 
 TEST_F(CsvSet, IsReadRowByRowAndGoesOnBehindAWrongOne) {

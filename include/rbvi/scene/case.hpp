@@ -26,9 +26,10 @@ SceneEntry read_case(const std::string &text, const std::string &file,
 
 /// A case to begin with: a block with friction on a floor.
 std::string new_case();
-/// A case whose sections list these parts of a mesh file.
-std::string new_case(const std::string &mesh, const std::vector<std::string> &regions,
-                     const std::vector<std::string> &boundaries);
+/// A case of a mesh file: its parts, in a comment; the lines of the sections imposed and contact,
+/// in which `depth` is a parameter with this upper bound.
+std::string new_case(const std::string &mesh, const std::string &parts, const std::string &imposed,
+                     const std::string &contact, double depth);
 
 /// A key of case files.
 struct CaseKey {

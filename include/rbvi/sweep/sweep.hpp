@@ -75,6 +75,11 @@ struct SampleStore {
 /// `samples/<hash of mu>.h5`
 std::filesystem::path sample_file(const std::filesystem::path &directory, const Mu &mu);
 
+/// Throws bad_input where samples in the directory were made with other settings than run_sweep's:
+/// to be told before anything else is.
+void check_samples(const Problem &problem, const HfOptions &options,
+                   const std::filesystem::path &directory);
+
 /// Collective on `world`. `problem` lives on the communicator of this rank's group. Samples that
 /// are there already are reused; throws bad_input, naming the setting and both values, if one was
 /// made with other settings. What remains there of killed runs is removed.

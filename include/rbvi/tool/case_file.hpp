@@ -21,6 +21,8 @@ std::vector<CaseSetting> parse_options(const std::string &text, const std::strin
 
 /// "name: value" and a line end, the value quoted where YAML would take it for something else.
 std::string case_line(const std::string &name, const std::string &value);
+/// Of YAML, whatever the text.
+std::string in_quotes(const std::string &text);
 
 /// Collective. Rank 0 alone reads the file; every rank gets its text. Throws bad_input on every
 /// rank if there is no such file, it cannot be read or is no text of at most 1 MB.
