@@ -105,7 +105,7 @@ private:
     double position = -lowest.height;
     for (const int v : lowest.vertices)
       position = std::max(position, -mesh.points[v][1]);
-    add_contact("floor", "{plane: {normal: [0, -1], position: " + shortest_number(position) + "}}",
+    add_contact("floor", "{plane: {normal: [0, -1], position: " + shortest_number(position + 0.0) + "}}",
                 {&lowest});
   }
   bool free(const Side &side) const { return std::ranges::find(contact_, &side) == contact_.end(); }
@@ -149,6 +149,7 @@ std::string case_of(const std::string &file, const fs::path &folder) {
   const std::string mesh_file =
       file.ends_with(".geo") ? meshed(MPI_COMM_SELF, file, {}, folder_of_meshes()) : file;
   const auto [regions, boundaries] = parts_of_gmsh(mesh_file, 2);
+  scene.contacts.emplace_back().entities.parts = boundaries; // these may lie on each other
   const CaseOfMesh made(mesh_with_groups(scene, mesh_file), file);
   const fs::path beside =
       fs::absolute(file).lexically_normal().lexically_relative(fs::absolute(folder));

@@ -101,16 +101,6 @@ TEST_F(Cases, WhereBodiesAreNotHeldIsTold) {
   EXPECT_TRUE(contains(lifted, "no defect was found")) << lifted;
 }
 
-TEST_F(Cases, AMeshOfOnesOwnBeginsACaseOfIt) {
-  spill("coarse.msh", coarse_gmsh());
-  output_of(rbvi(1, "new own -mesh coarse.msh"));
-  const std::string text = slurp("own/case.yaml");
-  EXPECT_TRUE(contains(text, "mesh: {file: ../coarse.msh")) << text;
-  EXPECT_TRUE(contains(text, "boundaries: boundary")) << text;
-  EXPECT_EQ(shell(rbvi(1, "new other -mesh nowhere.msh")).status, 2);
-  EXPECT_FALSE(fs::exists("other"));
-}
-
 /// A body above a rim: triangles from (0, 1) to each edge.
 std::string fan(const std::vector<std::array<double, 2>> &rim) {
   const std::size_t count = rim.size();
@@ -127,6 +117,21 @@ std::string fan(const std::vector<std::array<double, 2>> &rim) {
     mesh << 2 * i + 3 << " 1 2 2 2 " << i + 2 << ' ' << i + 3 << "\n"
          << 2 * i + 4 << " 2 2 3 3 1 " << i + 2 << ' ' << i + 3 << "\n";
   return mesh.str() + "$EndElements\n";
+}
+
+TEST_F(Cases, AMeshOfOnesOwnBeginsACaseOfIt) {
+  spill("coarse.msh", coarse_gmsh());
+  expect_all_refused({{"new other -mesh nowhere.msh", "nowhere.msh"},
+                      {"new other -mesh coarse.msh", "too few named boundaries (1)"}});
+  EXPECT_FALSE(fs::exists("other"));
+  std::string mesh = fan({{-1, 0.25}, {-0.5, 0}, {0, 0}, {0.5, 0}, {1, 0.25}});
+  mesh.replace(mesh.find("\"rim\""), 5, "\"[it's: #1\"");
+  spill("fan.msh", mesh);
+  output_of(rbvi(1, "new own -mesh fan.msh"));
+  const std::string text = slurp("own/case.yaml");
+  EXPECT_TRUE(contains(text, "mesh: {file: ../fan.msh")) << text;
+  EXPECT_TRUE(contains(text, "boundaries: top, [it's: #1")) << text;
+  EXPECT_TRUE(contains(output_of(rbvi(1, "check own")), "no defect was found"));
 }
 
 /// Half of a disk of radius 1, its edges 1 - cos(15 degrees) inside; and a wedge, which has a
@@ -179,6 +184,27 @@ TEST_F(Cases, AGeometryIsMeshed) {
   spill("plate.yaml", plate);
   spill("plate.geo", "Rectangle(1 = 3;\n");
   expect_all_refused({{"check plate.yaml", "gmsh cannot mesh 'plate.geo'"}});
+}
+
+/// With all that it includes as it is, and with the numbers that are set, or not at all.
+TEST_F(Cases, AGeometryIsWhatItIncludesAndWhatIsSet) {
+  if (std::system("command -v gmsh > /dev/null 2>&1") != 0) GTEST_SKIP() << "no program gmsh";
+  const auto area = [&](const std::string &hole, const std::string &more = "") {
+    spill("hole.inc", hole);
+    return output_of(rbvi(1, "solve -case plate.yaml -mu 0.01 " + more));
+  };
+  spill("plate.yaml", plate + "outputs: {area: {integral: 1, in: all}}\n");
+  spill("plate.geo", "General.Verbosity = 1;\nInclude \"hole.inc\";\n" +
+                         geometry.substr(geometry.find('\n') + 1));
+  const std::string set = area("DefineConstant[ hole = 0.2 ];\n");
+  EXPECT_EQ(area("DefineConstant[ hole = 0.1 ];\n"), set);
+  EXPECT_NE(area("DefineConstant[ hole = 0.1 ];\n", "-set mesh.set="), set);
+  EXPECT_NE(area("hole = 0.2;\n", "-set mesh.set="), area("hole = 0.1;\n", "-set mesh.set="));
+  expect_all_refused(
+      {{"check plate.yaml", "mesh: set gives hole = 0.3, but 'plate.geo' makes it 0.1 by itself: "
+                            "write DefineConstant[hole = ...]; there"},
+       {"check plate.yaml -set mesh.set.hole=,mesh.set.whole=0.3",
+        "mesh: set gives whole, a number that 'plate.geo' does not have"}});
 }
 
 /// Those of the case, at parameters that are free and that are not.
