@@ -105,7 +105,8 @@ private:
     double position = -lowest.height;
     for (const int v : lowest.vertices)
       position = std::max(position, -mesh.points[v][1]);
-    add_contact("floor", "{plane: {normal: [0, -1], position: " + shortest_number(position + 0.0) + "}}",
+    add_contact("floor",
+                "{plane: {normal: [0, -1], position: " + shortest_number(position + 0.0) + "}}",
                 {&lowest});
   }
   bool free(const Side &side) const { return std::ranges::find(contact_, &side) == contact_.end(); }
