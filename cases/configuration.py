@@ -50,7 +50,7 @@ def draw_contact(axis, contact, boundary, bodies, grid, colour, size):
 def draw_body(axis, bodies, case, size):
     """Handles of a legend, and marks. `size`: of what is shown."""
     values = values_of(case, bodies.answer)
-    if case.get("mirror_images") == 2:
+    if case.get("mirror_images") == 2 or case.get("mirror") == {"x": 0}:
         draw_mirrored(axis, bodies)
     handles, marks = draw_regions(axis, bodies), []
 

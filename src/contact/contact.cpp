@@ -1,6 +1,7 @@
 #include "rbvi/contact/contact.hpp"
 
 #include "rbvi/contact/history.hpp"
+#include "rbvi/contact/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <algorithm>
@@ -223,8 +224,11 @@ std::string failure_at(const Contact &contact, const FullMu &mu, const ContactOp
 
 void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOperators &operators,
                      const Vector &lambda, double least, Outputs &outputs) {
-  if (contact.interfaces.size() == 1)
-    return contact.interfaces.front()->outputs(mu, operators, lambda, least, outputs);
+  const MirrorPlanes &mirrors = contact.interfaces.front()->mirrors();
+  if (contact.interfaces.size() == 1) {
+    contact.interfaces.front()->outputs(mu, operators, lambda, least, outputs);
+    return make_whole(mirrors, outputs);
+  }
   Index node = 0;
   for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
     const ContactInterface &interface = *contact.interfaces[i];
@@ -236,6 +240,7 @@ void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOper
     one.name = contact.names[i];
     interface.outputs(mu, part, lambda.segment(contact.first_row[i], interface.dual().size()),
                       least, one);
+    make_whole(mirrors, one);
     add_contact(one, outputs);
   }
 }

@@ -96,6 +96,9 @@ private:
            circumference(scene_.axisymmetric,
                          at.eta[0] * edge.mapped[0] + at.eta[1] * edge.mapped[1]);
   }
+  std::vector<Point> vertices() const {
+    return {mesh_.points.begin(), mesh_.points.begin() + shape_.vertices()};
+  }
   Cell mapped_edge(const FullMu &mu, Index edge) const;
   Point sum(const Cell &edge, const std::array<double, 3> &coefficients) const;
   Point deformed_normal(const FullMu &mu, const Cell &edge, const TracePoint &at,
@@ -110,6 +113,8 @@ private:
   Friction friction_;
   std::vector<TracePoint> points_;
   CurveShape shape_;
+  Middle middle_ = Middle::none;
+  Vector images_; ///< of the dual nodes
 };
 
 CurveSupport::CurveSupport(const Scene &scene, InterfaceMesh interface_mesh,
@@ -123,6 +128,8 @@ CurveSupport::CurveSupport(const Scene &scene, InterfaceMesh interface_mesh,
   const int copies = friction_.law == FrictionLaw::none ? 1 : 2;
   set_dual(shape_.vertices(), copies, rigid.lumped,
            linear_gram(mesh_.points, shape_, copies, scene.axisymmetric));
+  images_ = image_counts(scene.mirrors, dual_.points);
+  middle_ = middle_of(scene.mirrors, vertices(), is_one_open_piece(shape_));
 }
 
 Cell CurveSupport::mapped_edge(const FullMu &mu, Index e) const {
@@ -231,12 +238,11 @@ CurveSupport::Lift CurveSupport::lift(const FullMu &mu, const ContactState &stat
 
 void CurveSupport::outputs(const FullMu &mu, const ContactOperators &operators,
                            const Vector &lambda, double, Outputs &outputs) const {
-  const std::vector<Point> vertices(mesh_.points.begin(), mesh_.points.begin() + shape_.vertices());
-  const Matrix mapped = mapped_points(scene_, mu, vertices);
+  const Matrix mapped = mapped_points(scene_, mu, vertices());
   const Lift unit = lift(mu, operators.state, mapped, lambda);
-  const bool has_middle = shape_.pieces.size() == 1 && !shape_.pieces.front().loop;
-  support_outputs({lambda, operators.weights, unit.horizontal, unit.vertical, bound(mu),
-                   has_middle ? Matrix(mapped(dual_.vertices, Eigen::all)) : Matrix()},
+  const Vector arc = arc_lengths(mapped), s = from_middle(middle_, arc, arc[arc.size() - 1]);
+  support_outputs({lambda, operators.weights, unit.horizontal, unit.vertical, bound(mu), images_,
+                   middle_, s.size() > 0 ? Vector(s(dual_.vertices)) : s},
                   outputs);
   if (scene_.axisymmetric) drop_plane_outputs(outputs);
   for (std::size_t k = 0; k < shape_.pieces.size(); ++k) {
@@ -249,10 +255,10 @@ void CurveSupport::outputs(const FullMu &mu, const ContactOperators &operators,
     };
     const auto [first, last] = mesh_.closed(k);
     if (first && last) continue;
+    const int ends = (!first && carries(piece.first_vertex, 1)) +
+                     (!last && carries(piece.first_vertex + piece.vertices() - 1, -1));
     outputs.ends_in_contact =
-        outputs.ends_in_contact.value_or(0) +
-        (!first && carries(piece.first_vertex, 1) ? 1.0 : 0.0) +
-        (!last && carries(piece.first_vertex + piece.vertices() - 1, -1) ? 1.0 : 0.0);
+        outputs.ends_in_contact.value_or(0) + ends * image_count(scene_.mirrors);
   }
 }
 

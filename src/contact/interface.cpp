@@ -89,13 +89,13 @@ Matrix mapped_points(const Scene &scene, const FullMu &mu, const std::vector<Poi
   return result;
 }
 
-void pressure_outputs(double images, const Vector &weights, const Vector &lambda, double least,
-                      Outputs &outputs) {
+void pressure_outputs(const Vector &images, const Vector &weights, const Vector &lambda,
+                      double least, Outputs &outputs) {
   const auto active = lambda.array() > least;
-  outputs.normal_force = images * weights.dot(lambda);
-  outputs.contact_measure = images * active.select(weights, 0).sum();
-  outputs.contact_nodes = images * static_cast<double>(active.count());
-  outputs.free_nodes = images * static_cast<double>(lambda.size() - active.count());
+  outputs.normal_force = weights.dot(lambda);
+  outputs.contact_measure = active.select(weights, 0).sum();
+  outputs.contact_nodes = active.select(images, 0).sum();
+  outputs.free_nodes = active.select(0, images).sum();
   outputs.peak_pressure = lambda.maxCoeff();
 }
 

@@ -91,7 +91,7 @@ void add_named_outputs(const Scene &scene, const Contact &contact, const FullMu 
     if (has_cells(form)) {
       value = sources.of_cells(static_cast<int>(k));
     } else {
-      OutputLines lines(form, mu);
+      OutputLines lines(form, mu, scene.mirrors);
       for (std::size_t i = 0; i < traces.size(); ++i) {
         if (std::ranges::find(form.at, contact.names[i]) == form.at.end()) continue;
         ContactInterface &interface = *contact.interfaces[i];
@@ -101,7 +101,7 @@ void add_named_outputs(const Scene &scene, const Contact &contact, const FullMu 
                                lambda.segment(contact.first_row[i], interface.dual().size())));
         add_pieces(*traces[i], scene.axisymmetric, lines);
       }
-      value = output_value(form, lines.sums(), scene.mirror_images);
+      value = output_value(form, lines.sums());
     }
     if (!std::isfinite(value))
       throw failure("the output '" + form.name +

@@ -333,9 +333,14 @@ CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t number, const 
   }
   for (Vector *sum : {&fields.sigma_n, &fields.sigma_tau, &gamma})
     sum->array() /= edges.array();
+  const NitscheCurve &curve = layer.curves[number];
+  fields.images = curve.images;
+  for (Index vertex = 0; vertex < count; ++vertex) // the image of the edge has the other sign
+    if (curve.images[vertex] < image_count(layer.scene.mirrors)) fields.sigma_tau[vertex] = 0;
   fields.p_n = fields.sigma_n - gamma.cwiseProduct(excess);
   fields.p_tau = fields.sigma_tau - gamma.cwiseProduct(slip);
-  if (layer.curves[number].has_middle) fields.arc_length = arc_length.array() - length / 2;
+  fields.arc_length = from_middle(curve.middle, arc_length, length);
+  fields.halved = is_halved(curve.middle);
   return fields;
 }
 

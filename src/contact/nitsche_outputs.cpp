@@ -56,14 +56,14 @@ struct LawErrors {
   bool friction = false;
 
   void add(const CurveFields &fields, const NitscheLaw &law) {
-    normal += (fields.sigma_n - fields.p_n.cwiseMin(0)).squaredNorm();
-    sigma_n += fields.sigma_n.squaredNorm();
+    const auto square = [&](const Vector &of) { return fields.images.dot(of.cwiseAbs2()); };
+    normal += square(fields.sigma_n - fields.p_n.cwiseMin(0));
+    sigma_n += square(fields.sigma_n);
     if (law.law == FrictionLaw::none) return;
     const Vector bounds = bounds_at(fields, law);
     friction = true;
-    tangential +=
-        (fields.sigma_tau - fields.p_tau.cwiseMax(-bounds).cwiseMin(bounds)).squaredNorm();
-    sigma_tau += fields.sigma_tau.squaredNorm();
+    tangential += square(fields.sigma_tau - fields.p_tau.cwiseMax(-bounds).cwiseMin(bounds));
+    sigma_tau += square(fields.sigma_tau);
   }
   void set(Outputs &outputs) const {
     const auto ratio = [](double square, double scale) {
@@ -96,10 +96,10 @@ void nitsche_outputs(std::span<const NitscheFace> faces, const Matrix &pressures
   if (const Index edges = fields.arc_length.size() - 1; edges > 0)
     outputs.centre_pressure = centre_pressure(
         sums.edge_pressures, (fields.arc_length.head(edges) + fields.arc_length.tail(edges)) / 2,
-        sums.contact / 2);
+        fields.halved ? sums.contact : sums.contact / 2, fields.halved);
   outputs.max_penetration = std::max(0.0, fields.excess.maxCoeff());
-  outputs.contact_nodes = static_cast<double>((fields.p_n.array() < 0).count());
-  outputs.free_nodes = static_cast<double>(fields.p_n.size()) - *outputs.contact_nodes;
+  outputs.contact_nodes = (fields.p_n.array() < 0).select(fields.images, 0).sum();
+  outputs.free_nodes = fields.images.sum() - *outputs.contact_nodes;
   LawErrors errors;
   errors.add(fields, law);
   errors.set(outputs);
@@ -109,8 +109,9 @@ void nitsche_outputs(std::span<const NitscheFace> faces, const Matrix &pressures
   outputs.tangential_force = sums.tangential;
   outputs.slip_directions = direction_count(fields.p_tau, -fields.p_n);
   outputs.stick_half_width = sums.stick / 2;
-  outputs.stick_nodes = static_cast<double>(
-      (fields.p_n.array() < 0 && fields.p_tau.array().abs() < bounds.array()).count());
+  outputs.stick_nodes = (fields.p_n.array() < 0 && fields.p_tau.array().abs() < bounds.array())
+                            .select(fields.images, 0)
+                            .sum();
   outputs.friction_violation = std::max(0.0, (fields.sigma_tau.cwiseAbs() - bounds).maxCoeff());
 }
 
@@ -127,7 +128,8 @@ void nitsche_outputs(const NitscheLayer &layer, const FullMu &mu,
     nitsche_outputs(own, pressures.middleRows(4 * first, 4 * count), fields, one);
     if (layer.scene.axisymmetric) drop_plane_outputs(one);
     if (const std::vector<int> &open = layer.curves[k].open_ends; !open.empty())
-      one.ends_in_contact = ends_in_contact(fields, open);
+      one.ends_in_contact = image_count(layer.scene.mirrors) * ends_in_contact(fields, open);
+    make_whole(layer.scene.mirrors, one);
     if (&one == &part) {
       part.name = contact_name(layer.scene, k);
       add_contact(part, outputs);

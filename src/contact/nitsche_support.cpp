@@ -54,7 +54,8 @@ public:
             number[mesh_.nodes_of(e)[simplex_edges[layer_.cells[e].edge][end]]];
     NitscheCurve &curve_here = layer_.curves.front();
     curve_here.facing = on_arcs(std::move(curve_here.facing), mesh_);
-    curve_here.has_middle = shape.pieces.size() == 1 && !shape.pieces.front().loop;
+    curve_here.middle = middle_of(scene.mirrors, dual_.points, is_one_open_piece(shape));
+    curve_here.images = image_counts(scene.mirrors, dual_.points);
     for (std::size_t k = 0; k < shape.pieces.size(); ++k) {
       const CurveChain &piece = shape.pieces[k];
       const Index first = piece.first_vertex, last = first + piece.vertices() - 1;

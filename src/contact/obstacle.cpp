@@ -73,7 +73,7 @@ SparseMatrix ObstacleInterface::gram() const {
   return result;
 }
 
-/// Those of the facets of one cell alone.
+/// Those of the facets of one cell alone, but for those that the body goes on beyond.
 std::vector<Index> ObstacleInterface::rim() const {
   std::map<std::vector<int>, int> cells_of;
   const int corners = mesh_.dim + 1;
@@ -84,10 +84,13 @@ std::vector<Index> ObstacleInterface::rim() const {
       std::ranges::sort(facet);
       ++cells_of[facet];
     }
+  const Vector images = image_counts(scene_.mirrors, mesh_.points);
+  const auto is_inside = [&](int vertex) { return images[vertex] < image_count(scene_.mirrors); };
   std::set<Index> nodes;
   for (const auto &[facet, cells] : cells_of)
     for (const int vertex : facet)
-      if (cells == 1) nodes.insert(dual_of_vertex()[vertex]);
+      if (cells == 1 && !std::ranges::all_of(facet, is_inside))
+        nodes.insert(dual_of_vertex()[vertex]);
   nodes.erase(-1);
   return {nodes.begin(), nodes.end()};
 }
@@ -103,14 +106,13 @@ Vector ObstacleInterface::at_vertices(const Vector &normal) const {
 
 void ObstacleInterface::outputs(const FullMu &, const ContactOperators &operators,
                                 const Vector &lambda, double least, Outputs &outputs) const {
-  pressure_outputs(scene_.mirror_images, operators.weights, lambda, least, outputs);
+  const Vector images = image_counts(scene_.mirrors, dual_.points);
+  pressure_outputs(images, operators.weights, lambda, least, outputs);
   if (!obstacle_.region.empty())
-    outputs.ends_in_contact =
-        scene_.mirror_images * static_cast<double>((lambda(rim_).array() > least).count());
+    outputs.ends_in_contact = (lambda(rim_).array() > least).select(images(rim_), 0).sum();
   if (!obstacle_.lumped) return;
   const Vector pressed = (lambda.array() > least).select(lambda, 0);
   outputs.contact_measure =
-      scene_.mirror_images *
       contact_area(at_vertices(operators.weights), at_vertices(pressed), simplices_, mesh_.dim + 1);
 }
 

@@ -280,15 +280,16 @@ void PairInterface::outputs(const FullMu &mu, const ContactOperators &operators,
                             const Vector &lambda, double least, Outputs &outputs) const {
   const Index count = multipliers_.count();
   const Vector pressure = lambda.head(count);
-  pressure_outputs(scene_.mirror_images, operators.weights, pressure, least, outputs);
+  const Vector images = image_counts(scene_.mirrors, dual_.points);
+  pressure_outputs(images, operators.weights, pressure, least, outputs);
   const HatWeights hats =
       curves(images(scene_.map, mu, mesh_.points)).slave.hats(scene_.axisymmetric);
   const Vector shares =
       operators.weights.head(count).cwiseQuotient(multipliers_.whole_weights(hats));
   outputs.ends_in_contact =
+      image_count(scene_.mirrors) *
       ends_in_contact(multipliers_, *slave_, shares, pressure, least, closed_ends());
-  if (friction())
-    friction_outputs(scene_.mirror_images, operators.weights, lambda, bound(mu), outputs);
+  if (friction()) friction_outputs(images, operators.weights, lambda, bound(mu), outputs);
   if (is_of_heights(pair_)) return;
   Point force{}; // on the slave
   for (const PairPoint &p : partners(mu, operators.state).points) {
@@ -297,8 +298,8 @@ void PairInterface::outputs(const FullMu &mu, const ContactOperators &operators,
     if (friction())
       force = force - p.weight * multipliers_.sum(lambda.tail(count), p.slave_edge, p.s) * tau;
   }
-  outputs.reaction = scene_.mirror_images * force[1];
-  if (scene_.mirror_images == 1) outputs.horizontal_reaction = force[0];
+  outputs.reaction = force[1];
+  outputs.horizontal_reaction = force[0];
   if (scene_.axisymmetric) drop_plane_outputs(outputs);
 }
 

@@ -1,19 +1,13 @@
 #include "rbvi/contact/support_outputs.hpp"
 
+#include "rbvi/contact/interface.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace rbvi {
 
 namespace {
-
-/// Arc lengths of the points from the middle of the curve.
-Vector arc_lengths(const Matrix &points) {
-  Vector s = Vector::Zero(points.rows());
-  for (Index i = 1; i < s.size(); ++i)
-    s[i] = s[i - 1] + (points.row(i) - points.row(i - 1)).norm();
-  return s.array() - s[s.size() - 1] / 2;
-}
 
 /// Below its bound by more than round-off, and than the law is met to.
 bool sticks(double tangential, double bound, double violation) {
@@ -22,20 +16,52 @@ bool sticks(double tangential, double bound, double violation) {
 
 } // namespace
 
-double centre_pressure(const Vector &pressure, const Vector &s, double half_width) {
-  Index next = 0;
-  s.cwiseAbs().minCoeff(&next);
+Middle middle_of(const MirrorPlanes &mirrors, const std::vector<Point> &points, bool open) {
+  if (!open || mirrors.size() > 1) return Middle::none;
+  if (mirrors.empty()) return Middle::halfway;
+  const Vector images = image_counts(mirrors, points);
+  const bool at_first = images[0] == 1, at_last = images[images.size() - 1] == 1;
+  return at_first == at_last ? Middle::none : at_first ? Middle::first : Middle::last;
+}
+
+Vector arc_lengths(const Matrix &points) {
+  Vector s = Vector::Zero(points.rows());
+  for (Index i = 1; i < s.size(); ++i)
+    s[i] = s[i - 1] + (points.row(i) - points.row(i - 1)).norm();
+  return s;
+}
+
+Vector from_middle(Middle middle, const Vector &arc, double length) {
+  switch (middle) {
+  case Middle::halfway:
+    return arc.array() - length / 2;
+  case Middle::first:
+    return arc;
+  case Middle::last:
+    return length - arc.array();
+  default:
+    return {};
+  }
+}
+
+double centre_pressure(const Vector &pressure, const Vector &s, double half_width, bool halved) {
+  std::array<Index, 2> around{-1, -1}; // the last one before the middle, the first one behind it
   double count = 0, x = 0, xx = 0, p = 0, xp = 0; // p = a + b x, x = s^2
   for (Index i = 0; i < s.size(); ++i) {
+    Index &next = around[s[i] < 0 ? 0 : 1];
+    if (next < 0 || std::abs(s[i]) < std::abs(s[next])) next = i;
     if (!(std::abs(s[i]) < 0.12 * half_width)) continue;
-    const double square = s[i] * s[i];
-    ++count;
-    x += square;
-    xx += square * square;
-    p += pressure[i];
-    xp += square * pressure[i];
+    const double square = s[i] * s[i], images = halved && s[i] > 0 ? 2 : 1;
+    count += images;
+    x += images * square;
+    xx += images * square * square;
+    p += images * pressure[i];
+    xp += images * square * pressure[i];
   }
-  return count < 3 ? pressure[next] : (p * xx - xp * x) / (count * xx - x * x);
+  if (count >= 3) return (p * xx - xp * x) / (count * xx - x * x);
+  const auto [before, behind] = around;
+  if (before < 0 || behind < 0) return pressure[std::max(before, behind)];
+  return (s[behind] * pressure[before] - s[before] * pressure[behind]) / (s[behind] - s[before]);
 }
 
 double direction_count(const Vector &tangential, const Vector &pressure) {
@@ -51,27 +77,33 @@ void drop_plane_outputs(Outputs &outputs) {
     (outputs.*member).reset();
 }
 
+void make_whole(const MirrorPlanes &mirrors, Outputs &outputs) {
+  const int images = image_count(mirrors);
+  for (const auto member : {&Outputs::normal_force, &Outputs::tangential_force, &Outputs::reaction,
+                            &Outputs::horizontal_reaction, &Outputs::contact_measure,
+                            &Outputs::contact_half_width, &Outputs::stick_half_width})
+    if (std::optional<double> &of_domain = outputs.*member) *of_domain *= images;
+  if (outputs.slip_directions) // an image slips the other way
+    outputs.slip_directions = std::min(images * *outputs.slip_directions, 2.0);
+  if (cancels(mirrors, 0)) outputs.horizontal_reaction.reset();
+  if (cancels(mirrors, 1)) outputs.reaction.reset();
+}
+
 void support_outputs(const SupportState &state, Outputs &outputs) {
   const Index count = state.weights.size();
   const Vector pressure = state.lambda.head(count);
-  double contact = 0;
-  for (Index i = 0; i < count; ++i)
-    if (pressure[i] > 0) contact += state.weights[i];
-  outputs.contact_nodes = static_cast<double>((pressure.array() > 0).count());
-  outputs.free_nodes = static_cast<double>(count) - *outputs.contact_nodes;
-  outputs.normal_force = state.weights.dot(pressure);
+  pressure_outputs(state.images, state.weights, pressure, 0, outputs);
   outputs.reaction = -state.lift.dot(state.lambda);
   outputs.horizontal_reaction = -state.push.dot(state.lambda);
-  outputs.contact_measure = contact;
-  outputs.contact_half_width = contact / 2;
-  outputs.peak_pressure = pressure.maxCoeff();
-  if (state.points.rows() > 0)
-    outputs.centre_pressure = centre_pressure(pressure, arc_lengths(state.points), contact / 2);
+  outputs.contact_half_width = *outputs.contact_measure / 2;
+  if (const bool halved = is_halved(state.middle); state.s.size() > 0)
+    outputs.centre_pressure =
+        centre_pressure(pressure, state.s, *outputs.contact_measure / (halved ? 1 : 2), halved);
   if (state.lambda.size() > count)
-    friction_outputs(1, state.weights, state.lambda, state.bound, outputs);
+    friction_outputs(state.images, state.weights, state.lambda, state.bound, outputs);
 }
 
-void friction_outputs(double images, const Vector &weights, const Vector &lambda,
+void friction_outputs(const Vector &images, const Vector &weights, const Vector &lambda,
                       const FrictionBound &bound, Outputs &outputs) {
   const Index count = weights.size();
   const Vector pressure = lambda.head(count), shear = lambda.tail(count).cwiseAbs(),
@@ -81,13 +113,12 @@ void friction_outputs(double images, const Vector &weights, const Vector &lambda
   for (Index i = 0; i < count; ++i)
     if (pressure[i] > 0 && sticks(shear[i], bounds[i], violation)) {
       stick += weights[i];
-      ++sticking;
+      sticking += images[i];
     }
-  const double directions = direction_count(lambda.tail(count), pressure);
-  outputs.slip_directions = std::min(images * directions, 2.0); // an image slips the other way
-  outputs.tangential_force = images * weights.dot(shear);
-  outputs.stick_half_width = images * stick / 2;
-  outputs.stick_nodes = images * sticking;
+  outputs.slip_directions = direction_count(lambda.tail(count), pressure);
+  outputs.tangential_force = weights.dot(shear);
+  outputs.stick_half_width = stick / 2;
+  outputs.stick_nodes = sticking;
   outputs.friction_violation = violation;
 }
 

@@ -78,9 +78,14 @@ PointStress stress_at(const Scene &scene, const FullMu &all_parameters, const Di
   for (int i = 0; i < nodes_per_cell(scene.dim, scene.degree); ++i)
     gradient += Eigen::Map<const Eigen::Vector3d>(cell.u[i].data()) *
                 Eigen::Map<const Eigen::RowVector3d>(gradients[i].data());
-  if (scene.axisymmetric) // the hoop strain
-    gradient(2, 2) = displacement_at(scene, cell, barycentric)[0] /
-                     point_at(cell.cell.mapped, barycentric, scene.dim + 1)[0];
+  if (scene.axisymmetric) { // the hoop strain u_r / r, on the axis its limit
+    const auto &corners = cell.cell.mapped;
+    const double radius = point_at(corners, barycentric, 3)[0],
+                 largest = std::max({corners[0][0], corners[1][0], corners[2][0]});
+    gradient(2, 2) = radius <= 1e-10 * largest
+                         ? gradient(0, 0)
+                         : displacement_at(scene, cell, barycentric)[0] / radius;
+  }
   const auto &[regions, material, free_strain] = scene.materials[cell.material];
   const Lame constants = material(all_parameters, reference_centre(cell.cell));
   const bool flat = is_plane_stress(material);

@@ -260,12 +260,12 @@ bool has_cells(const OutputForm &output) {
   return output.place != OutputForm::Place::contact;
 }
 
-double output_value(const OutputForm &form, const OutputSums &sums, double images) {
+double output_value(const OutputForm &form, const OutputSums &sums) {
   switch (form.kind) {
   case OutputForm::Kind::integral:
-    return images * sums.integral;
+    return sums.integral;
   case OutputForm::Kind::measure:
-    return images * sums.measure;
+    return sums.measure;
   case OutputForm::Kind::mean:
     return sums.integral / sums.measure;
   case OutputForm::Kind::min:
@@ -306,7 +306,7 @@ double reaction_value(const SeparatedReaction &reaction, const Scene &scene, con
   for (Index q = 0; q < of_terms.size(); ++q)
     force +=
         coefficient_of(term_of(scene, reaction.terms[q]), mu) * (of_terms[q] + reaction.given[q]);
-  return scene.mirror_images * force;
+  return image_count(scene.mirrors) * force;
 }
 
 double cell_output(const Scene &scene, int output, const FullMu &mu, const OutputCells &cells,
@@ -314,11 +314,11 @@ double cell_output(const Scene &scene, int output, const FullMu &mu, const Outpu
   const OutputState state{scene, mu, cells, u};
   const OutputForm &form = scene.outputs[output];
   const std::span<const OutputPart> parts = parts_of(cells, output);
-  if (form.kind == OutputForm::Kind::spring)
-    return scene.mirror_images * spring_force(state, form, parts);
+  if (form.kind == OutputForm::Kind::spring) return spring_force(state, form, parts);
   if (form.kind == OutputForm::Kind::reaction)
-    return scene.mirror_images * reaction(state, form, parts);
-  OutputLines lines(form, mu);
+    return image_count(scene.mirrors) * reaction(state, form, parts);
+  const MirrorPlanes none; // a point is itself alone
+  OutputLines lines(form, mu, form.place == OutputForm::Place::point ? none : scene.mirrors);
   for (const OutputPart &part : parts) {
     if (form.place == OutputForm::Place::point)
       add_point(state, part, form.vector, lines);
@@ -327,7 +327,7 @@ double cell_output(const Scene &scene, int output, const FullMu &mu, const Outpu
     else
       add_triangle(state, part, lines);
   }
-  return output_value(form, lines.sums(), scene.mirror_images);
+  return output_value(form, lines.sums());
 }
 
 } // namespace rbvi

@@ -1,5 +1,6 @@
 #include "rbvi/fem/check_scene.hpp"
 #include "check_kernels.hpp"
+#include "check_mirrors.hpp"
 
 #include "rbvi/core/box.hpp"
 #include "rbvi/core/text.hpp"
@@ -299,6 +300,7 @@ void check_scene(const Problem &problem) {
   const Scene &scene = problem.scene();
   const FullMu mu = generic_point(scene.parameters);
   std::vector<double> outward, inward;
+  check_mirrors(problem);
   const std::vector<int> materials = materials_of_cells(scene, problem.mesh());
   collectively(problem.comm(), [&] {
     check_material(problem, materials);

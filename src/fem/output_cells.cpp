@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/element/cell_fields.hpp"
 #include "rbvi/fem/assembly.hpp"
 #include "rbvi/fem/materials.hpp"
 #include "rbvi/par/gather.hpp"
@@ -60,18 +61,42 @@ private:
 
   /// The one of the lowest number of those around it, on all ranks.
   void add_point(const OutputForm &form) {
-    const auto natural = [&](std::size_t cell) { return mesh_.natural_cell[cell]; };
-    std::vector<PetscInt> first{mesh_.total_cells};
+    const auto corners = static_cast<std::size_t>(mesh_.dim) + 1;
+    std::vector<PetscInt> around; // of each its number and its vertices
     for (std::size_t cell = 0; cell < mesh_.cells.size(); ++cell) {
       const auto at = barycentric_of(mesh_.dim, cell_of(mesh_, cell).reference, form.vector);
-      if (std::ranges::min(at) > -1e-10) first[0] = std::min(first[0], natural(cell));
+      if (!is_in(form.at, cell) || !(std::ranges::min(at) > -1e-10)) continue;
+      around.push_back(mesh_.natural_cell[cell]);
+      for (std::size_t i = 0; i < corners; ++i)
+        around.push_back(mesh_.natural_node[static_cast<std::size_t>(nodes_of(mesh_, cell)[i])]);
     }
-    over_ranks(mesh_.comm, MPI_MIN, first);
-    if (first[0] == mesh_.total_cells)
-      throw bad_input("the output '" + form.name + "' is at (" + short_number(form.vector[0]) +
-                      ", " + short_number(form.vector[1]) + "), which no cell of the mesh has");
+    around = gather_all(mesh_.comm, around, MPIU_INT);
+    const std::string where = "the output '" + form.name + "' is at (" +
+                              short_number(form.vector[0]) + ", " + short_number(form.vector[1]) +
+                              ")";
+    if (around.empty())
+      throw bad_input(where + ", which no cell of the mesh" +
+                      (form.at.empty() ? "" : " in '" + joined(form.at, "', '") + "'") + " has");
+    if (!meet(around, corners))
+      throw bad_input(where + ", which two bodies have: say which one by a region of it, "
+                              "{value: ..., point: [x, y], in: REGION}");
+    PetscInt first = mesh_.total_cells;
+    for (std::size_t k = 0; k < around.size(); k += corners + 1)
+      first = std::min(first, around[k]);
     for (std::size_t cell = 0; cell < mesh_.cells.size(); ++cell)
-      if (natural(cell) == first[0]) add({.cell = static_cast<int>(cell)});
+      if (mesh_.natural_cell[cell] == first) add({.cell = static_cast<int>(cell)});
+  }
+
+  /// Whether cells around a point, each a number and its vertices, are of one body: those that are
+  /// have one of these in common, with all others or with one beside them.
+  static bool meet(const std::vector<PetscInt> &around, std::size_t corners) {
+    std::vector<int> cells;
+    std::map<PetscInt, int> numbers;
+    for (std::size_t k = 0; k < around.size(); ++k)
+      if (k % (corners + 1) != 0)
+        cells.push_back(
+            numbers.try_emplace(around[k], static_cast<int>(numbers.size())).first->second);
+    return body_numbers(cells, static_cast<int>(corners), std::ssize(numbers), 0).maxCoeff() == 1;
   }
 
   /// A bit for each node of a cell that is on a boundary.

@@ -168,8 +168,7 @@ void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vec
 
 Outputs OnlineSolver::outputs(const Mu &mu, const ReducedAnswer &solution) const {
   Outputs result;
-  const double images = scene_.mirror_images;
-  result.energy = images * solution.energy;
+  result.energy = image_count(scene_.mirrors) * solution.energy;
   result.kkt_residual = solution.residual;
   result.iterations = solution.iterations;
   result.load_steps = solution.load_steps;

@@ -175,8 +175,12 @@ template <class Store, class Of> void list_scene(const Store &store, Of &scene) 
     store.number("axisymmetric", scene.axisymmetric);
   store.number("symmetric", scene.symmetric);
   store.number("skewed_by", scene.skewed_by);
-  store.number("mirror_images", scene.mirror_images);
   if (store.has("small", scene.small)) store.number("small", scene.small);
+  store.items("mirror", scene.mirrors, [](const Store &part, auto &plane) {
+    name_record(part, "mirror");
+    part.number("component", plane.component);
+    part.number("position", plane.position);
+  });
   store.function("map", scene.map);
   function_if("motion", scene.motion);
   list_coordinates(store, scene);

@@ -164,23 +164,6 @@ void read_requirements(Reader &reader, Scene &scene, Defects &defects) {
         all, [&] { scene.check_parameters = check_of(formula_of(reader, conditions), messages); });
 }
 
-void read_symmetry(const Reader &reader, Scene &scene, Defects &defects) {
-  const CaseNode &node = section(reader, "symmetric");
-  defects.collect(node, [&] {
-    scene.mirror_images = number_or(reader, reader.root, "mirror_images", 1);
-    scene.small = yes_or(reader.root, "small", false);
-    if (node.value.empty()) return;
-    const auto found = std::ranges::find(reader.parameters, node.value);
-    const CaseNode *declared = section(reader, "parameters").find(node.value);
-    scene.symmetric = declared != nullptr || is_yes(node);
-    if (scene.symmetric && scene.axisymmetric)
-      throw bad_input("an axisymmetric body is one half, without data beyond x = 0: leave out "
-                      "symmetric");
-    if (found != reader.parameters.end())
-      scene.skewed_by = static_cast<int>(found - reader.parameters.begin());
-  });
-}
-
 void read_free(Reader &reader, Scene &scene, Defects &defects) {
   const CaseNode &node = section(reader, "free");
   std::vector<std::string> names;
@@ -210,12 +193,12 @@ void read_sections(Reader &reader, Scene &scene, Defects &defects) {
   read_mesh(reader, scene, defects);
   if (!defects.none()) return;
   read_physics(reader, scene, defects);
+  read_symmetry(reader, scene, defects);
   read_motion(reader, scene, defects);
   read_springs(reader, scene, defects);
   read_contact(reader, scene, defects);
   read_outputs(reader, scene, defects);
   read_requirements(reader, scene, defects);
-  read_symmetry(reader, scene, defects);
 }
 
 /// A list [a, b] as "a,b".

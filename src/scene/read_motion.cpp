@@ -116,12 +116,13 @@ void add_forces(Reader &reader, const CaseNode &node, const std::string &boundar
       throw bad_input(forces[c] + " is the force on the whole boundary: it does not depend on the "
                                   "place");
     const auto component = static_cast<int>(c);
-    scene.tied.push_back({boundary, component});
     Point direction{};
     direction[c] = 1;
+    check_direction(scene, direction, "a total force");
+    scene.tied.push_back({boundary, component});
     Form mean;
     mean.means = {{boundary, direction, scene.axisymmetric}};
-    scene.f.push_back(exact_term(mean, {factor_of(reader, force)}));
+    scene.f.push_back(exact_term(mean, {factor_of(reader, share_of_domain(scene, force))}));
   }
 }
 

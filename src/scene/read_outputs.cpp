@@ -86,19 +86,21 @@ std::string kind_of(const CaseNode &node) {
 /// Contacts, boundaries, regions or a point.
 void put_place(const Reader &reader, const CaseNode &node, const Scene &scene, OutputForm &form) {
   const CaseNode *at = node.find("at"), *in = node.find("in"), *point = node.find("point");
-  if ((at != nullptr) + (in != nullptr) + (point != nullptr) > 1)
+  if (at != nullptr && (in != nullptr || point != nullptr))
     throw bad_input("an output has one place: 'at' contacts or boundaries, 'in' regions, or a "
-                    "'point'");
+                    "'point', of a region with 'in'");
   if ((point != nullptr) != (node.find("value") != nullptr))
     throw bad_input("a value is that at a point: {value: EXPRESSION, point: [x, y]}");
+  if (in != nullptr) {
+    form.at = names_in(*in);
+    if (std::ranges::find(form.at, std::string("all")) != form.at.end()) form.at.clear();
+  }
   if (point != nullptr) {
     const std::vector<double> x = numbers_in(reader, *point, 2);
     form.place = Place::point;
     form.vector = {x[0], x[1], 0};
   } else if (in != nullptr) {
     form.place = Place::region;
-    form.at = names_in(*in);
-    if (std::ranges::find(form.at, std::string("all")) != form.at.end()) form.at.clear();
   } else if (at == nullptr) {
     for (std::size_t i = 0; i < scene.contacts.size(); ++i)
       form.at.push_back(contact_name(scene, i));
@@ -124,13 +126,15 @@ void put_values(Reader &reader, const CaseNode &node, const CaseNode &value, con
                                                                   : one}));
 }
 
-void put_reaction(const Reader &reader, const CaseNode &node, OutputForm &form) {
+void put_reaction(const Reader &reader, const CaseNode &node, const Scene &scene,
+                  OutputForm &form) {
   if (node.find("at") == nullptr || node.find("in") != nullptr || node.find("where") != nullptr)
     throw bad_input("a reaction is that of boundaries, whole: {reaction: [0, 1], at: BOUNDARY}");
   const std::vector<double> direction = numbers_in(reader, entry(node, "reaction"), 2);
   form.vector = {direction[0], direction[1], 0};
   if (!(std::abs(norm(form.vector) - 1) <= 1e-6))
     throw bad_input("the direction of a reaction has the length 1");
+  check_direction(scene, form.vector, "a reaction");
   form.place = Place::boundary;
   form.at = names_in(entry(node, "at"));
 }
@@ -159,7 +163,7 @@ OutputForm output_in(Reader &reader, const std::string &name, const CaseNode &no
   OutputForm form{name};
   form.kind = std::ranges::find(kinds, kind, &std::pair<std::string, Kind>::first)->second;
   if (form.kind == Kind::reaction) {
-    put_reaction(reader, node, form);
+    put_reaction(reader, node, scene, form);
   } else if (form.kind == Kind::spring) {
     put_spring(reader, node, scene, form);
   } else {

@@ -18,6 +18,7 @@ std::vector<Mean> means_of(const Reader &reader, const CaseNode &node, const Sce
       throw bad_input("the direction is of the length " + short_number(norm(direction)) +
                       ": give one of length 1");
   }
+  check_direction(scene, direction, "the force of a spring");
   const CaseNode *at = node.find("at"), *between = node.find("between");
   if ((at == nullptr) == (between == nullptr))
     throw bad_input("a spring is 'at' a boundary, or 'between: [one, other]'");
@@ -30,9 +31,9 @@ std::vector<Mean> means_of(const Reader &reader, const CaseNode &node, const Sce
   return means;
 }
 
-/// The factor of an expression in parameters alone.
-Factor force_factor(Reader &reader, const std::string &text) {
-  const Expression value = parse_expression(text);
+/// The factor of an expression in parameters alone, as far as the domain has it.
+Factor force_factor(Reader &reader, const Scene &scene, const std::string &text) {
+  const Expression value = share_of_domain(scene, parse_expression(text));
   if (depends_on_point(formula_of(reader, {value})))
     throw bad_input("what a spring has is of the whole of it: it does not depend on the place");
   return factor_of(reader, value);
@@ -50,11 +51,11 @@ void read_spring(Reader &reader, const CaseNode &node, Scene &scene) {
   if (spring.stiffness) {
     limit(reader, *spring.stiffness, {0, 1e15}, scene);
     scene.a.push_back(
-        exact_term(form_of(spring), {force_factor(reader, spring.stiffness->text())}));
+        exact_term(form_of(spring), {force_factor(reader, scene, spring.stiffness->text())}));
   }
   if (spring.preload)
     scene.f.push_back(
-        exact_term(form_of(spring), {force_factor(reader, "-(" + *spring.preload + ")")}));
+        exact_term(form_of(spring), {force_factor(reader, scene, "-(" + *spring.preload + ")")}));
 }
 
 } // namespace

@@ -79,6 +79,11 @@ struct Spring {
 };
 Spring spring_in(const Reader &reader, const CaseNode &node, const Scene &scene);
 
+/// What the domain has of a force or a stiffness that is given of the whole body.
+Expression share_of_domain(const Scene &scene, const Expression &value);
+/// Throws bad_input, naming what has this direction, where it crosses a plane of symmetry.
+void check_direction(const Scene &scene, const Point &direction, const std::string &what);
+
 /// Sections, in the order in which they depend on each other. They throw bad_input, or collect
 /// defects one by one.
 void read_parameters(Reader &reader, Scene &scene, Defects &defects);
@@ -88,6 +93,8 @@ void read_facts(const Reader &reader, const CaseNode &mesh, MeshRecipe &recipe, 
 void read_motion(Reader &reader, Scene &scene, Defects &defects);
 void read_physics(Reader &reader, Scene &scene, Defects &defects);
 /// After the physics.
+void read_symmetry(const Reader &reader, Scene &scene, Defects &defects);
+/// After the symmetry.
 void read_springs(Reader &reader, Scene &scene, Defects &defects);
 void read_contact(Reader &reader, Scene &scene, Defects &defects);
 /// After contact.

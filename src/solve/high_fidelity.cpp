@@ -20,10 +20,10 @@ void measure(const Problem &problem, const Operators &op, const Vector &weights,
   RBVI_CALL(VecDot(au.get(), result.free_u.get(), &quadratic));
   RBVI_CALL(VecDot(op.f, result.free_u.get(), &linear));
 
-  const double images = problem.scene().mirror_images;
   Outputs &outputs = result.outputs;
   result.residual = result.kkt.largest();
-  outputs.energy = images * (quadratic / 2 - linear + op.imposed_energy + problem.spring_energy());
+  outputs.energy = image_count(problem.scene().mirrors) *
+                   (quadratic / 2 - linear + op.imposed_energy + problem.spring_energy());
   outputs.kkt_residual = result.residual;
   const Vector left = op.nodal_gap - op.nodal_b * restrict_to(problem.trace(), result.free_u.get());
   std::array<double, 2> penetration = penetration_at(left, op.nodal_gap);

@@ -53,7 +53,8 @@ MethodResult ByNitsche::solve(const ContactTask &task) {
   nitsche_outputs(layer, op.mu, nitsche_faces(layer, op.mu, layer.cells, found.layer), found.layer,
                   found.pressures, result.outputs);
   result.kkt.stationarity = found.residual;
-  result.outputs.energy = problem_.scene().mirror_images * (found.energy + op.imposed_energy);
+  result.outputs.energy =
+      image_count(problem_.scene().mirrors) * (found.energy + op.imposed_energy);
   result.residual = *(result.outputs.kkt_residual = found.residual);
   result.outputs.iterations = result.iterations = found.iterations;
   result.converged = true;

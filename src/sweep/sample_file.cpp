@@ -7,6 +7,7 @@
 #include "rbvi/par/collective.hpp"
 
 #include <limits>
+#include <span>
 
 namespace rbvi {
 
@@ -35,6 +36,7 @@ constexpr std::array stored_outputs{&Outputs::energy,
                                     &Outputs::strained,
                                     &Outputs::kkt_residual,
                                     &Outputs::max_penetration,
+                                    &Outputs::overlap,
                                     &Outputs::friction_violation,
                                     &Outputs::law_error_normal,
                                     &Outputs::law_error_tangential,
@@ -83,26 +85,34 @@ H5Reader open_sample(const std::filesystem::path &path) {
   }
 }
 
+/// Of each of some answers, one behind the other; NaN: it is not set.
+template <class Store, class List>
+void list_outputs(const Store &store, const std::string &name, List &&list) {
+  std::vector<double> values;
+  for (const Outputs &one : list)
+    for (const auto member : stored_outputs)
+      values.push_back((one.*member).value_or(std::numeric_limits<double>::quiet_NaN()));
+  const std::size_t size = values.size();
+  store(name, values);
+  if constexpr (Store::reads) {
+    if (values.size() != size) throw bad_input("another number of outputs");
+    auto value = values.begin();
+    for (Outputs &one : list)
+      for (const auto member : stored_outputs)
+        if (const double next = *value++; !std::isnan(next)) one.*member = next;
+  }
+}
+
 template <class Store, class Of> void list_sample(const Store &store, Of &sample) {
   store("mu", sample.mu);
   store("u", sample.u);
   store("lambda", sample.lambda);
   store("states", sample.states);
-  list_as(
-      store, "outputs", sample.outputs,
-      [](const Outputs &outputs) {
-        std::vector<double> values;
-        for (const auto member : stored_outputs)
-          values.push_back((outputs.*member).value_or(std::numeric_limits<double>::quiet_NaN()));
-        return values;
-      },
-      [](const std::vector<double> &values) {
-        if (values.size() != stored_outputs.size()) throw bad_input("another number of outputs");
-        Outputs outputs;
-        for (std::size_t i = 0; i < values.size(); ++i)
-          if (!std::isnan(values[i])) outputs.*stored_outputs[i] = values[i];
-        return outputs;
-      });
+  list_outputs(store, "outputs", std::span(&sample.outputs, 1));
+  auto &interfaces = sample.outputs.interfaces;
+  list_column(
+      store, "interfaces/names", interfaces, [](auto &one) -> auto & { return one.name; });
+  list_outputs(store, "interfaces/outputs", interfaces);
 }
 
 template <class Store, class Of> void list_settings(const Store &store, Of &settings) {

@@ -54,6 +54,7 @@ CurveFields constant_fields(Index count, double p) {
   fields.sigma_n.setConstant(-p);
   fields.p_n.setConstant(-p);
   fields.arc_length = Vector::LinSpaced(count, -0.5, 0.5);
+  fields.images = Vector::Ones(count);
   return fields;
 }
 

@@ -4,6 +4,7 @@
 #include "../couple.hpp"
 #include "curves.hpp"
 #include "rbvi/contact/pair.hpp"
+#include "rbvi/contact/support_outputs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -145,12 +146,13 @@ TEST(PairInterface, TheDualSpaceIsThatOfTheReferenceSlave) {
 
 TEST(PairInterface, OutputsAreThoseOfTheMirrorImagesTogether) {
   Scene scene = scene_of(constant, 1);
-  scene.mirror_images = 2;
+  scene.mirrors = {{0, -9}};
   const InterfaceMesh mesh = two_curves(1);
   const ContactOperators op = at(scene, mesh, {0});
   const Vector lambda{{3, 0, 1, 1e-5}};
   Outputs out;
   scene.contacts.front().make(scene, mesh)->outputs({0}, op, lambda, 1e-3, out);
+  make_whole(scene.mirrors, out);
   EXPECT_DOUBLE_EQ(*out.normal_force, 2 * op.weights.dot(lambda));
   EXPECT_DOUBLE_EQ(*out.contact_measure, 2 * (op.weights[0] + op.weights[2]));
   EXPECT_EQ(*out.contact_nodes, 4);

@@ -181,7 +181,7 @@ public:
   }
   void outputs(const FullMu &, const ContactOperators &operators, const Vector &lambda,
                double least, Outputs &outputs) const override {
-    pressure_outputs(1, operators.weights, lambda, least, outputs);
+    pressure_outputs(Vector::Ones(lambda.size()), operators.weights, lambda, least, outputs);
   }
   Grid fields(const FullMu &, const Vector &, const Vector &) override { return {}; }
 };

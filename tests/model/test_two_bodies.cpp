@@ -138,7 +138,7 @@ TEST(OnlinePair, TheContactGapIsThatOfTheDeformedCurves) {
 TEST(OnlinePair, OutputsAreOfTheWholeDisks) {
   const ReducedModel model = synthetic::random_pair_model({}, 6, p0());
   Scene quarter = p0();
-  quarter.mirror_images = 1;
+  quarter.mirrors.clear();
   OnlineSolver whole_solver(model, p0()), quarter_solver(model, quarter);
   const Mu mu{0.9};
   const ReducedAnswer solution = whole_solver.solve(mu);

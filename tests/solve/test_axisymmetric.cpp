@@ -223,6 +223,32 @@ TEST(Axisymmetric, TheHoopStressIsLames) {
   }
 }
 
+/// A pressed cylinder of radius 1: its stress is the same everywhere, on the axis, where u / r is a
+/// limit, too. `sides` has edges on the axis.
+TEST(Axisymmetric, OutputsOnTheAxisAreLimits) {
+  for (const int degree : {1, 2}) {
+    const Scene scene = scene_of(
+        "mesh: {built_in: one_block, degree: " + std::to_string(degree) +
+        "}\nparameters: {d: {range: [0.01, 0.1], default: 0.05}}\n"
+        "materials: {steel: {at: all, E: 3, nu: 0.3}}\nimposed: {top: {at: top, uy: -d}}\n"
+        "contact: {f: {at: contact, against: {plane: {normal: [0, -1], position: 0}}}}\n"
+        "outputs:\n  along: {value: sigma_yy, point: [0, 0.21]}\n"
+        "  corner: {value: sigma_yy, point: [0, 0]}\n  hoop: {value: sigma_zz, point: [0, 0.5]}\n"
+        "  mantle: {integral: sigma_yy, at: sides}\n  most: {max: von_mises, at: sides}\n"
+        "  stored: {integral: strain_energy, in: all}\n");
+    Problem problem(PETSC_COMM_WORLD, scene, {});
+    const double d = 0.03, stress = 3 * d / 0.5, near = 1e-9;
+    const std::vector<NamedOutput> found = HighFidelity(problem, {}).solve({d}).outputs.named;
+    ASSERT_EQ(found.size(), 6U);
+    EXPECT_NEAR(found[0].value, -stress, near);
+    EXPECT_NEAR(found[1].value, -stress, near);
+    EXPECT_NEAR(found[2].value, 0, near);
+    EXPECT_NEAR(found[3].value, -stress * pi, near);
+    EXPECT_NEAR(found[4].value, stress, near);
+    EXPECT_NEAR(found[5].value, stress * stress / 6 * pi / 2, near);
+  }
+}
+
 TEST(Axisymmetric, AnswersDoNotDependOnTheRanks) {
   const Scene scene = tube(2);
   const TemporaryFile file(ring_mesh({1, 2, 0, 1, 6, 6}));

@@ -208,6 +208,29 @@ TEST_F(SweepTest, AFailingSampleIsRecordedAndRetried) {
   }
 }
 
+/// What warnings look at of each contact by itself.
+TEST_F(SweepTest, OutputsOfEachContactAreKept) {
+  const Scene scene = make_scene("roller", {{"arc_edges", "8"}});
+  Mu mu;
+  for (int i = 0; i < scene.parameters.size(); ++i)
+    mu.push_back((scene.parameters.at(i).lower + scene.parameters.at(i).upper) / 2);
+  const Groups groups(PETSC_COMM_WORLD, ranks_in_world());
+  Problem problem(groups.comm(), scene, {});
+  const Outputs solved = HighFidelity(problem, {}).solve(mu).outputs;
+  const Sweep kept = run_sweep(PETSC_COMM_WORLD, groups, problem, {}, {mu}, {directory / "roller"});
+  ASSERT_EQ(kept.samples.size(), 1U);
+  const std::vector<Outputs> &found = kept.samples.front().outputs.interfaces;
+  ASSERT_EQ(solved.interfaces.size(), 2U);
+  ASSERT_EQ(found.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(found[i].name, solved.interfaces[i].name);
+    EXPECT_EQ(found[i].contact_nodes, solved.interfaces[i].contact_nodes);
+    EXPECT_EQ(found[i].free_nodes, solved.interfaces[i].free_nodes);
+    EXPECT_TRUE(found[i].contact_nodes);
+  }
+  EXPECT_EQ(resolution_warning(kept.samples.front().outputs), resolution_warning(solved));
+}
+
 TEST_F(SweepTest, ARetriedSampleThatSucceedsLosesItsReason) {
   (void)sweep({five[0]});
   const fs::path failed = sample_file(samples, five[1]).replace_extension("failed");

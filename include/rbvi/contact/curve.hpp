@@ -55,6 +55,10 @@ private:
   Index vertices_ = 0;
 };
 
+inline bool is_one_open_piece(const CurveShape &shape) {
+  return shape.pieces.size() == 1 && !shape.pieces.front().loop;
+}
+
 /// Successive edges with their shape, whatever the numbers of their vertices.
 struct ChainedEdges {
   std::vector<int> vertices; ///< those numbers, along the pieces

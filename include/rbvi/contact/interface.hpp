@@ -126,6 +126,7 @@ public:
 
   const InterfaceMesh &mesh() const { return mesh_; }
   const DualSpace &dual() const { return dual_; }
+  const MirrorPlanes &mirrors() const { return scene_.mirrors; }
   /// Dual nodes that are fixed in some directions, as on an axis of symmetry: they carry no
   /// tangential traction, which for a symmetric answer is zero there.
   virtual std::vector<Index> partly_fixed() const;
@@ -170,8 +171,9 @@ public:
     return constraint_at(mu, x, scene_.map(mu, x), displacement);
   }
 
-  /// Fills the outputs of contact. `operators`: at least those of assemble_nodal, with the state;
-  /// `lambda`: a node with at most `least` counts as free.
+  /// Fills the outputs of contact of the domain, with the numbers of nodes of the whole body:
+  /// contact_outputs makes the others the whole's. `operators`: at least those of assemble_nodal,
+  /// with the state; `lambda`: a node with at most `least` counts as free.
   virtual void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                        double least, Outputs &outputs) const = 0;
   /// Outputs::gap_error of an answer, 0 where contact follows the displacement or what is faced is
@@ -230,10 +232,10 @@ Vector at_columns(const InterfaceMesh &mesh, const Vector &nodal);
 Matrix mapped_points(const Scene &scene, const FullMu &mu, const std::vector<Point> &points);
 
 /// Forces and measures of a pressure without friction: normal_force, contact_measure (the weights
-/// of the active nodes), contact_nodes, free_nodes, peak_pressure; of `images` mirror images
-/// together.
-void pressure_outputs(double images, const Vector &weights, const Vector &lambda, double least,
-                      Outputs &outputs);
+/// of the active nodes), contact_nodes, free_nodes, peak_pressure. `images` of each node, all of
+/// which are counted.
+void pressure_outputs(const Vector &images, const Vector &weights, const Vector &lambda,
+                      double least, Outputs &outputs);
 
 /// Adds gap, normal and to_partner, what leads from each node to the point that it faces: along the
 /// normal, or other ways.

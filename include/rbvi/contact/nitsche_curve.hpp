@@ -12,6 +12,7 @@
 #pragma once
 
 #include "rbvi/contact/nitsche.hpp"
+#include "rbvi/contact/support_outputs.hpp"
 #include "rbvi/core/outputs.hpp"
 
 #include <span>
@@ -48,7 +49,8 @@ struct NitscheCurve {
   Facing facing;
   double gamma0;
   std::vector<int> open_ends{}; ///< vertices where pieces end that are not closed
-  bool has_middle = true;       ///< it is one open piece
+  Middle middle = Middle::halfway;
+  Vector images{}; ///< of each vertex
   bool friction() const { return law.law != FrictionLaw::none; }
   /// Throws failure, naming the value, for a negative one.
   NitscheLaw law_at(const FullMu &mu) const;
@@ -173,7 +175,9 @@ double line_minimum(double linear, double quadratic, const NitscheLine &line);
 /// that meet there, the pressures with it, and u_n less the gap.
 struct CurveFields {
   Vector sigma_n, sigma_tau, p_n, p_tau, excess;
-  Vector arc_length; ///< from the middle, mapped; empty where the curve has none
+  Vector arc_length;   ///< from the middle, mapped; empty where the curve has none
+  Vector images;       ///< of each vertex
+  bool halved = false; ///< the arc lengths are those of one half of the whole curve
 };
 CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t curve, const FullMu &mu,
                            const Vector &u);

@@ -3,13 +3,28 @@
 
 #include "rbvi/core/dense.hpp"
 #include "rbvi/core/outputs.hpp"
+#include "rbvi/core/scene.hpp"
 #include "rbvi/method/node_laws.hpp"
 
 namespace rbvi {
 
+/// Where the middle of the contact boundary of the whole body is along that of the domain: nowhere
+/// where it is not one open piece; at an end that is on a plane of symmetry.
+enum class Middle { none, halfway, first, last };
+/// `points`: the vertices along a curve in one piece that is `open`, or any.
+Middle middle_of(const MirrorPlanes &mirrors, const std::vector<Point> &points, bool open);
+inline bool is_halved(Middle middle) {
+  return middle == Middle::first || middle == Middle::last;
+}
+/// The way along points to each.
+Vector arc_lengths(const Matrix &points);
+/// From the middle, of places by their way along a curve of this length; empty where it has none.
+Vector from_middle(Middle middle, const Vector &arc, double length);
+
 /// At the middle of a curve: by a fit of p against s^2 over arc lengths |s| < 0.12 half_width, or
-/// the next value where that holds fewer than three.
-double centre_pressure(const Vector &pressure, const Vector &arc_length, double half_width);
+/// linear between the two values around it where that holds fewer than three. `halved`: s >= 0,
+/// and what lies beyond the middle is the image of it.
+double centre_pressure(const Vector &pressure, const Vector &s, double half_width, bool halved);
 
 /// One state of contact on a curve.
 struct SupportState {
@@ -18,7 +33,9 @@ struct SupportState {
   const Vector &push;    ///< multipliers: their work on a unit horizontal displacement, B e_x
   const Vector &lift;    ///< and on a vertical one, B e_y
   FrictionBound bound;
-  const Matrix &points; ///< mapped vertices x dim, along the curve; empty: it has no middle
+  const Vector &images; ///< of each vertex
+  Middle middle;
+  Vector s; ///< vertices: arc lengths from the middle; empty: it has none
 };
 
 /// The signs, 0 to 2 of them, that the tangential stress has where there is pressure.
@@ -28,10 +45,14 @@ double direction_count(const Vector &tangential, const Vector &pressure);
 /// contact_half_width, stick_half_width, centre_pressure.
 void drop_plane_outputs(Outputs &outputs);
 
+/// Makes outputs of contact of the domain those of the whole body: forces and lengths are those of
+/// all images; components of the force that cancel are taken away.
+void make_whole(const MirrorPlanes &mirrors, Outputs &outputs);
+
 /// Of normal and tangential multipliers: tangential_force, stick_half_width, friction_violation (a
-/// pressure), of `images` mirror images together. A node sticks where it is below its bound by more
-/// than that.
-void friction_outputs(double images, const Vector &weights, const Vector &lambda,
+/// pressure). A node sticks where it is below its bound by more than that. `images`: as in
+/// pressure_outputs.
+void friction_outputs(const Vector &images, const Vector &weights, const Vector &lambda,
                       const FrictionBound &bound, Outputs &outputs);
 
 /// Fills normal_force, contact_measure, contact_half_width (half of the measure), reaction,

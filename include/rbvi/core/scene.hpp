@@ -8,6 +8,7 @@
 #pragma once
 
 #include "rbvi/core/contact_recipe.hpp"
+#include "rbvi/core/mirror.hpp"
 #include "rbvi/core/terms.hpp"
 #include "rbvi/core/units.hpp"
 
@@ -171,8 +172,7 @@ struct Scene {
   int skewed_by = -1;
   /// Small kinematics are meant, however far bodies move: nothing warns of them.
   bool small = false;
-  /// The domain is one of so many mirror images: energy, forces and measures are the whole's.
-  double mirror_images = 1;
+  MirrorPlanes mirrors{}; ///< what a and f have are the domain's, all outputs the whole body's
 
   /// Where the body can touch: at least one.
   std::vector<ContactRecipe> contacts;

@@ -1,6 +1,6 @@
 // What outputs of a scene's own are made of: sums over straight lines of expressions in fields. A
 // part of a line on which a condition holds ends inside it, so that its measure is continuous in
-// mu.
+// mu. They are of the whole body: of the images of a line, too.
 #pragma once
 
 #include "rbvi/core/formula.hpp"
@@ -20,12 +20,39 @@ struct OutputSums {
 /// One output at one mu, over many lines.
 class OutputLines {
 public:
-  OutputLines(const OutputForm &form, const FullMu &mu) : form_(form), mu_(mu) {}
+  OutputLines(const OutputForm &form, const FullMu &mu, const MirrorPlanes &mirrors)
+      : form_(form), mu_(mu), mirrors_(mirrors) {}
 
   /// Adds so many lines, s in [0, 1]: fields(line, s) along each; weight(line, fields) is what its
   /// measure is weighted by.
   template <class Fields, class Weight>
   void add(std::size_t lines, const Fields &fields, const Weight &weight) {
+    for (int image = 0; image < image_count(mirrors_); ++image)
+      add_image(
+          lines,
+          [&](std::size_t line, double s) {
+            OutputFields at = fields(line, s);
+            reflect(mirrors_, image, at);
+            return at;
+          },
+          weight);
+  }
+
+  /// The measure and the integral, or of a maximum and a minimum these.
+  const OutputSums &sums() const { return sums_; }
+
+  struct Place {
+    double s, weight;
+  };
+  /// Where a line is asked: of a maximum and a minimum at ends and middle, else at Gauss points.
+  const std::array<Place, 3> &places() const {
+    const bool extreme = form_.kind == OutputForm::Kind::max || form_.kind == OutputForm::Kind::min;
+    return extreme ? ends : gauss;
+  }
+
+private:
+  template <class Fields, class Weight>
+  void add_image(std::size_t lines, const Fields &fields, const Weight &weight) {
     find_parts(lines, fields);
     std::vector<double> weights(places().size() * parts_.size());
     evaluate(weights.size(), [&](std::size_t i) {
@@ -43,19 +70,6 @@ public:
     }
   }
 
-  /// The measure and the integral, or of a maximum and a minimum these.
-  const OutputSums &sums() const { return sums_; }
-
-  struct Place {
-    double s, weight;
-  };
-  /// Where a line is asked: of a maximum and a minimum at ends and middle, else at Gauss points.
-  const std::array<Place, 3> &places() const {
-    const bool extreme = form_.kind == OutputForm::Kind::max || form_.kind == OutputForm::Kind::min;
-    return extreme ? ends : gauss;
-  }
-
-private:
   /// Exact to degree 5.
   static constexpr double away = 0.38729833462074168852; // sqrt(0.15)
   static constexpr std::array<Place, 3> gauss{
@@ -119,12 +133,13 @@ private:
 
   const OutputForm &form_;
   const FullMu &mu_;
+  const MirrorPlanes &mirrors_;
   OutputSums sums_;
   std::vector<Part> parts_;
   std::vector<double> columns_, results_; ///< of evaluate()
 };
 
-/// Of so many mirror images; not finite over nothing.
-double output_value(const OutputForm &form, const OutputSums &sums, double images);
+/// Not finite over nothing.
+double output_value(const OutputForm &form, const OutputSums &sums);
 
 } // namespace rbvi
