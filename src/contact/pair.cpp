@@ -280,8 +280,8 @@ void PairInterface::outputs(const FullMu &mu, const ContactOperators &operators,
                             const Vector &lambda, double least, Outputs &outputs) const {
   const Index count = multipliers_.count();
   const Vector pressure = lambda.head(count);
-  const Vector images = image_counts(scene_.mirrors, dual_.points);
-  pressure_outputs(images, operators.weights, pressure, least, outputs);
+  const Vector own_images = image_counts(scene_.mirrors, dual_.points);
+  pressure_outputs(own_images, operators.weights, pressure, least, outputs);
   const HatWeights hats =
       curves(images(scene_.map, mu, mesh_.points)).slave.hats(scene_.axisymmetric);
   const Vector shares =
@@ -289,7 +289,7 @@ void PairInterface::outputs(const FullMu &mu, const ContactOperators &operators,
   outputs.ends_in_contact =
       image_count(scene_.mirrors) *
       ends_in_contact(multipliers_, *slave_, shares, pressure, least, closed_ends());
-  if (friction()) friction_outputs(images, operators.weights, lambda, bound(mu), outputs);
+  if (friction()) friction_outputs(own_images, operators.weights, lambda, bound(mu), outputs);
   if (is_of_heights(pair_)) return;
   Point force{}; // on the slave
   for (const PairPoint &p : partners(mu, operators.state).points) {

@@ -198,17 +198,24 @@ std::string zone_warning(const Outputs &outputs) {
   const bool slips =
       contact > 0 && outputs.stick_nodes && *outputs.stick_nodes < fewest_that_stick &&
       outputs.tangential_force.value_or(0) > 0 && outputs.slip_directions.value_or(2) > 1;
-  if (!narrow && !slips) return "";
+  constexpr double far_from_law = 0.2;
+  if (!narrow && !slips) {
+    if (!(contact > 0) || outputs.law_error_normal.value_or(0) < far_from_law) return "";
+    return "law_error_normal is " + short_number(*outputs.law_error_normal) +
+           ": the pressure is that far from the law of contact; a finer mesh tells (-mesh_refine)";
+  }
   std::string text = "only " + short_number(contact) + " nodes are in contact";
   if (slips)
     text = "only " + short_number(*outputs.stick_nodes) + " of " + short_number(contact) +
            " nodes in contact stick";
   text += ": ";
   if (narrow) text += "forces may be off by 3e-3 or more, pressures and widths by 0.1";
-  if (narrow && slips) text += ", and ";
-  if (slips)
-    text +=
-        "where the slip turns, tangential_force may be off by " + formatted("%.1e", 1.5 / contact);
+  const bool rubs = slips || (outputs.stick_nodes.value_or(contact) < fewest_that_stick &&
+                              outputs.tangential_force.value_or(0) > 0);
+  if (narrow && rubs) text += ", and ";
+  if (rubs)
+    text += std::string(slips ? "where the slip turns, " : "") + "tangential_force may be off by " +
+            formatted("%.1e", 1.5 / contact);
   return text + "; a finer mesh tells (-mesh_refine)";
 }
 

@@ -14,6 +14,7 @@
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/failures.hpp"
 #include "rbvi/tool/offline_run.hpp"
+#include "rbvi/tool/other_outputs.hpp"
 #include "rbvi/tool/run_directory.hpp"
 #include "rbvi/tool/tables.hpp"
 #include "rbvi/tool/workspace.hpp"
@@ -51,6 +52,21 @@ void name_training(const Sweep &sweep, ReducedModel &model) {
     failed.push_back(mu);
   model.made.trained_mu = as_columns(parameters_of(sweep.samples), model.scene.parameters.size());
   model.made.failed_mu = as_columns(failed, model.scene.parameters.size());
+}
+
+/// What reduce() has made, with its settings, training set and times.
+ReducedModel finished_model(Reduction &made, const OfflineOptions &options, const Sweep &sweep,
+                            const StageTable &before) {
+  ReducedModel model = std::move(made.model);
+  model.made.settings.merge(kept_settings(options)); // beside the whole scene
+  model.made.settings["samples"] = std::to_string(sweep.samples.size());
+  if (model.made.settings.contains("cone_ring"))
+    model.made.settings["cone_ring"] = std::to_string(made.ring);
+  name_training(sweep, model);
+  for (const StageTable &table : {before, made.stages})
+    for (const StageRow &row : table)
+      if (row.seconds) model.made.stage_seconds[row.stage.text] = *row.seconds;
+  return model;
 }
 
 /// That nobody knows the errors of a new model; and where it has so few samples that it cannot even
@@ -118,25 +134,27 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const OfflineOption
   before =
       finished_stages(before, preparation_stages(options, training.size(), groups, &sweep.report));
   Problem &problem = work.world_problem();
-  Reduction made = reduce(problem, sweep.samples, options.reduce);
-  ReducedModel model = std::move(made.model);
-  model.made.settings.merge(kept_settings(options)); // beside the whole scene
-  model.made.settings["samples"] = std::to_string(sweep.samples.size());
-  if (model.made.settings.contains("cone_ring"))
-    model.made.settings["cone_ring"] = std::to_string(made.ring);
-  name_training(sweep, model);
-  for (const StageTable &table : {before, made.stages})
-    for (const StageRow &row : table)
-      if (row.seconds) model.made.stage_seconds[row.stage.text] = *row.seconds;
+  StageTable reduction;
+  std::optional<ReducedModel> kept = with_other_outputs(world, options, problem, sweep);
+  LinearBasis fields; // not written yet
+  ReducedModel model;
+  if (kept) {
+    model = *std::move(kept);
+  } else {
+    Reduction made = reduce(problem, sweep.samples, options.reduce);
+    model = finished_model(made, options, sweep, before);
+    reduction = std::move(made.stages);
+    fields = std::move(made.bases.pod.basis);
+  }
   timed(after, stage::writing, [&] {
-    write_fields(work.world_problem(), made.bases.pod.basis, model, options.out / "model.h5");
+    if (fields.columns) write_fields(work.world_problem(), fields, model, options.out / "model.h5");
     collectively(world, [&] {
       if (rank_of(world) != 0) return;
       write_model(model, options.out / "model.h5");
       write_sample_table(options.out / "samples.csv", options.scene.parameters, sweep.samples);
     });
   });
-  std::vector<StageTable> stages{before, made.stages, finished_stages(after, closing_stages())};
+  std::vector<StageTable> stages{before, reduction, finished_stages(after, closing_stages())};
   for (StageTable &table : stages)
     for (StageRow &row : table)
       MPI_Allreduce(MPI_IN_PLACE, &row.peak, 1, MPI_DOUBLE, MPI_MAX, world);

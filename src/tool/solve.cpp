@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <sstream>
 
 namespace rbvi {
 
@@ -64,13 +65,7 @@ void command_solve(const OfflineOptions &options, const SolveOptions &solve) {
     if (rank_of(world) != 0) return;
     std::printf("%s\n", describe(space, mu).c_str());
     print_outputs(std::cout, solution.outputs);
-    ResolutionTally resolution;
-    resolution.add(solution.outputs);
-    resolution.print(std::cout);
-    warn_of_other_answers(std::cout, solution.to_other > 0 ? 1 : 0, 1);
-    warn_of_locking(
-        locking_ratio(options.scene, expand(space, mu), material_points(problem.contact())),
-        std::cout);
+    warn_of_answer(problem, mu, solution, std::cout);
     std::printf("stopped: %s\n", solution.reason.c_str());
     if (!solve.csv.empty()) {
       write_sample_table(solve.csv, space, {{mu, {}, {}, solution.outputs}});
@@ -78,6 +73,21 @@ void command_solve(const OfflineOptions &options, const SolveOptions &solve) {
     }
   });
   write_solution(problem, solve.vtu, mu, solution);
+}
+
+bool warn_of_answer(const Problem &problem, const Mu &mu, const HfSolution &solution,
+                    std::ostream &out) {
+  const Scene &scene = problem.scene();
+  std::ostringstream lines;
+  ResolutionTally resolution;
+  resolution.add(solution.outputs);
+  resolution.print(lines);
+  warn_of_other_answers(lines, solution.to_other > 0 ? 1 : 0, 1);
+  warn_of_locking(
+      locking_ratio(scene, expand(scene.parameters, mu), material_points(problem.contact())),
+      lines);
+  out << lines.str();
+  return !lines.str().empty();
 }
 
 void write_solution(Problem &problem, const std::string &vtu, const Mu &mu,

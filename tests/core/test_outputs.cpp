@@ -94,6 +94,14 @@ TEST(ResolutionWarning, NamesTheZoneThatIsTooSmall) {
   };
   EXPECT_TRUE(says(zones(8, 6, 1), "only 8 nodes are in contact"));
   EXPECT_FALSE(says(zones(8, 6, 1), "tangential_force"));
+  Outputs one_way = zones(4, 4, 1); // the stress of a node is undecided there, too
+  one_way.slip_directions = 1;
+  EXPECT_TRUE(says(one_way, "tangential_force may be off by 3.8e-01"));
+  Outputs off_its_law = zones(20, 20, 1);
+  off_its_law.law_error_normal = 0.1;
+  EXPECT_FALSE(says(off_its_law, "law"));
+  off_its_law.law_error_normal = 0.47;
+  EXPECT_TRUE(says(off_its_law, "law_error_normal is 0.47"));
   EXPECT_TRUE(says(zones(20, 1, 1), "only 1 of 20 nodes in contact stick"));
   EXPECT_TRUE(says(zones(20, 1, 1), "tangential_force may be off by 7.5e-02"));
   EXPECT_FALSE(says(zones(20, 1, 1), ": forces"));

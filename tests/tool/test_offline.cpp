@@ -4,7 +4,9 @@
 #include "rbvi/contact/support.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
+#include "rbvi/model/online.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/scene/case.hpp"
 #include "rbvi/tool/offline_run.hpp"
 #include "tests/catalogue.hpp"
 
@@ -80,6 +82,55 @@ struct Offline : testing::Test {
     EXPECT_TRUE(fs::exists(options.out / "model.h5"));
   }
 };
+
+/// A case with outputs: other ones take the model that is there.
+TEST_F(Offline, OtherOutputsTakeNoReduction) {
+  const auto scene_with = [](const std::string &outputs) {
+    return make_scene(read_case(
+        "rbvi: 1\nphysics: plane_strain\nmesh: {built_in: one_block, degree: 2}\n"
+        "parameters: {d: {range: [0.01, 0.05], default: 0.03}, k: {range: [1, 2], default: 1}}\n"
+        "materials: {rubber: {at: all, E: 15 * k, nu: 0.3}}\n"
+        "imposed: {top: {at: top, ux: 0.2 * d, uy: -d}}\n"
+        "contact: {floor: {at: contact, against: {plane: {normal: [0, -1], position: 0}}}}\n" +
+            outputs,
+        "block.yaml"));
+  };
+  const std::string others = "outputs: {push: {integral: pressure}, hold: {reaction: [0, 1], at: "
+                             "top}, inside: {value: sigma_yy, point: [0.3, 0.2]}}\n";
+  options.registry = std::make_shared<const Registry>(catalogue());
+  options.train = "grid:3,2";
+  options.scene = scene_with("outputs: {deep: {min: uy, in: all}}\n");
+  const auto reduced = [](const OfflineRun &run) {
+    return std::ranges::any_of(run.stages[1],
+                               [](const StageRow &row) { return bool(row.seconds); });
+  };
+  EXPECT_TRUE(reduced(run()));
+  EXPECT_TRUE(reduced(run())) << "nothing is other";
+  options.scene = scene_with(others);
+  const OfflineRun again = run();
+  EXPECT_FALSE(reduced(again));
+  EXPECT_EQ(again.sweep.report.solved, 0);
+  const Mu mu{0.023, 1.4};
+  const auto named = [&](const ReducedModel &model) {
+    OnlineSolver online(model);
+    return online.outputs(mu, online.solve(mu)).named;
+  };
+  std::vector<NamedOutput> kept;
+  if (rank_of(PETSC_COMM_WORLD) == 0)
+    kept = named(read_model(options.out / "model.h5", catalogue()));
+  options.train = "grid:3,3"; // another model
+  const OfflineRun whole = run();
+  EXPECT_TRUE(reduced(whole));
+  if (rank_of(PETSC_COMM_WORLD) != 0) return;
+  const std::vector<NamedOutput> fresh = named(whole.model);
+  ASSERT_EQ(kept.size(), 3U);
+  ASSERT_EQ(fresh.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(kept[i].name, fresh[i].name);
+    EXPECT_NEAR(kept[i].value, fresh[i].value, 1e-8 * std::abs(fresh[i].value));
+    EXPECT_NE(kept[i].value, 0);
+  }
+}
 
 TEST_F(Offline, CountsQueriesAtWhichACoefficientIsNotFinite) {
   options.scene.a.front().theta = {

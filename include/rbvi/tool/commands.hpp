@@ -13,6 +13,11 @@ void command_offline(const OfflineOptions &options);
 /// One high-fidelity solve. Collective on the world.
 void command_solve(const OfflineOptions &options, const SolveOptions &solve);
 
+/// A line for each thing that is not accurate in an answer or not the only one, by one rank;
+/// whether there is any.
+bool warn_of_answer(const Problem &problem, const Mu &mu, const HfSolution &solution,
+                    std::ostream &out);
+
 /// The files of -vtu, and a high-fidelity answer in them; nothing without that option. Collective.
 std::vector<NamedFile> files_of_solution(const std::string &vtu, const Scene &scene);
 void write_solution(Problem &problem, const std::string &vtu, const Mu &mu,
