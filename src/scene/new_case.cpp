@@ -28,7 +28,7 @@ contact:
     friction: {coulomb: friction}
 
 train: grid:4,4,4
-validate: random:20:1
+validate: random:20:2
 )";
 }
 
@@ -55,7 +55,7 @@ imposed: # a component that is absent is free
 )" + contact +
          R"(
 train: grid:5
-validate: random:20:1
+validate: random:20:2
 )";
 }
 

@@ -147,7 +147,8 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const OfflineOption
     fields = std::move(made.bases.pod.basis);
   }
   timed(after, stage::writing, [&] {
-    if (fields.columns) write_fields(work.world_problem(), fields, model, options.out / "model.h5");
+    if (fields.columns.get() != nullptr)
+      write_fields(work.world_problem(), fields, model, options.out / "model.h5");
     collectively(world, [&] {
       if (rank_of(world) != 0) return;
       write_model(model, options.out / "model.h5");
@@ -188,6 +189,8 @@ void command_offline(const OfflineOptions &options) {
   const OfflineRun run = run_offline(world, groups, options, training, std::move(plan));
   if (rank == 0) {
     print_stages(run.stages, foreseen);
+    if (run.stages[1].empty())
+      std::printf("The model is the one that was there: its outputs alone have changed\n");
     std::cout << "Self-check: ";
     print_self_check(std::cout, run.model.made.self_check, run.model.scene.parameters);
     tell_of_errors(run.model, options.out);
