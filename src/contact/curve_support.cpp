@@ -96,9 +96,6 @@ private:
            circumference(scene_.axisymmetric,
                          at.eta[0] * edge.mapped[0] + at.eta[1] * edge.mapped[1]);
   }
-  std::vector<Point> vertices() const {
-    return {mesh_.points.begin(), mesh_.points.begin() + shape_.vertices()};
-  }
   Cell mapped_edge(const FullMu &mu, Index edge) const;
   Point sum(const Cell &edge, const std::array<double, 3> &coefficients) const;
   Point deformed_normal(const FullMu &mu, const Cell &edge, const TracePoint &at,
@@ -129,7 +126,7 @@ CurveSupport::CurveSupport(const Scene &scene, InterfaceMesh interface_mesh,
   set_dual(shape_.vertices(), copies, rigid.lumped,
            linear_gram(mesh_.points, shape_, copies, scene.axisymmetric));
   images_ = image_counts(scene.mirrors, dual_.points);
-  middle_ = middle_of(scene.mirrors, vertices(), is_one_open_piece(shape_));
+  middle_ = middle_of(scene.mirrors, vertices_of(mesh_, shape_), is_one_open_piece(shape_));
 }
 
 Cell CurveSupport::mapped_edge(const FullMu &mu, Index e) const {
@@ -238,7 +235,7 @@ CurveSupport::Lift CurveSupport::lift(const FullMu &mu, const ContactState &stat
 
 void CurveSupport::outputs(const FullMu &mu, const ContactOperators &operators,
                            const Vector &lambda, double, Outputs &outputs) const {
-  const Matrix mapped = mapped_points(scene_, mu, vertices());
+  const Matrix mapped = mapped_points(scene_, mu, vertices_of(mesh_, shape_));
   const Lift unit = lift(mu, operators.state, mapped, lambda);
   const Vector arc = arc_lengths(mapped), s = from_middle(middle_, arc, arc[arc.size() - 1]);
   support_outputs({lambda, operators.weights, unit.horizontal, unit.vertical, bound(mu), images_,

@@ -59,6 +59,11 @@ inline bool is_one_open_piece(const CurveShape &shape) {
   return shape.pieces.size() == 1 && !shape.pieces.front().loop;
 }
 
+/// Of the first boundary, which has this shape.
+inline std::vector<Point> vertices_of(const InterfaceMesh &mesh, const CurveShape &shape) {
+  return {mesh.points.begin(), mesh.points.begin() + shape.vertices()};
+}
+
 /// Successive edges with their shape, whatever the numbers of their vertices.
 struct ChainedEdges {
   std::vector<int> vertices; ///< those numbers, along the pieces
