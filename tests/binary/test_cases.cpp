@@ -207,6 +207,25 @@ TEST_F(Cases, AGeometryIsWhatItIncludesAndWhatIsSet) {
         "mesh: set gives whole, a number that 'plate.geo' does not have"}});
 }
 
+/// A plane as a level set is the same plane: friction, and which nodes stick, included.
+TEST_F(Cases, PlanesAsLevelSetsGiveTheAnswersOfPlanes) {
+  if (std::system("command -v gmsh > /dev/null 2>&1") != 0)
+    GTEST_SKIP() << "there is no program gmsh";
+  const std::string seal =
+      "solve -case " RBVI_CASES "/seal -mu 0.6,0.2,0.3,0.45 -set 'mesh.set.edges=40";
+  const std::string planes = output_of(rbvi(1, seal + "'")),
+                    levels = output_of(rbvi(1, seal + ",contact.bottom.against={level_set: y}"
+                                                      ",contact.wall.against={level_set: x}"
+                                                      ",contact.lid.against={level_set: 5.33 - "
+                                                      "squeeze - y}'"));
+  for (const std::string name :
+       {"energy", "normal_force", "tangential_force", "contact_nodes", "stick_nodes", "lid force",
+        "lid friction", "bottom friction", "wall friction"})
+    EXPECT_NEAR(value_of(levels, name), value_of(planes, name),
+                1e-7 * std::abs(value_of(planes, name)))
+        << name;
+}
+
 /// Those of the case, at parameters that are free and that are not.
 TEST_F(Cases, TestsAreProved) {
   const std::string one = "check " RBVI_CASES "/patch -bodies one ";

@@ -127,6 +127,26 @@ TEST(ResolutionWarning, IsEmptyWhereNoZoneEnds) {
   EXPECT_NE(resolution_warning(outputs), "");
 }
 
+/// Once a run, with the number of answers.
+TEST(ValidityWarning, IsToldOfTheFirstAnswerThatSmallKinematicsDoNotHoldFor) {
+  Outputs right, far, strained;
+  right.gap_error = 0.04;
+  right.strained = 0.005;
+  far.gap_error = 0.235;
+  strained.strained = 0.5;
+  ResolutionTally tally;
+  for (const Outputs &outputs : {right, far, strained})
+    tally.add(outputs);
+  std::ostringstream out;
+  tally.print(out);
+  EXPECT_EQ(validity_warning(right), "");
+  EXPECT_NE(out.str().find("by 24 % of the largest approach: use kinematics: large"),
+            std::string::npos)
+      << out.str();
+  EXPECT_NE(out.str().find("(the first of 2 such answers)"), std::string::npos) << out.str();
+  EXPECT_NE(validity_warning(strained).find("in 50 % of the body"), std::string::npos);
+}
+
 /// An interface that barely touches is not hidden by one that touches widely.
 TEST(ResolutionWarning, IsThatOfEachInterface) {
   Outputs both, upper = zones(40, 30, 1), lower = zones(3, 3, 1e-3);

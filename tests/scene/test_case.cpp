@@ -194,6 +194,12 @@ TEST(Case, NormalsOfCirclesAreTakenWhereTheMapKeepsThem) {
         .record.parts.at("normal")
         .name;
   };
+  EXPECT_EQ(scene_of({{"mesh", "{built_in: half_disc}"},
+                      {"contact", "{s: {at: contact, against: {level_set: y + 1}}}"}})
+                .contacts.front()
+                .record.parts.at("normal")
+                .name,
+            "normal_of_surface");
   const std::string stretched = "[x, y*k]", turned = "[x*cos(k) - y*sin(k), x*sin(k) + y*cos(k)]";
   EXPECT_EQ(normal("{scale: k}", "auto"), "normals_of_circles");
   EXPECT_EQ(normal("[k*x + depth, k*y]", "auto"), "normals_of_circles");
