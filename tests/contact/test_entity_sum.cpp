@@ -2,6 +2,7 @@
 // and an obstacle against closed forms.
 #include "../core/refuses.hpp"
 #include "rbvi/contact/obstacle.hpp"
+#include "rbvi/contact/support_outputs.hpp"
 #include "support_scenes.hpp"
 
 #include <gtest/gtest.h>
