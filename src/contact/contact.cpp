@@ -60,6 +60,21 @@ void stack_nodal(const std::vector<ContactOperators> &all, ContactOperators &ope
     if (of_one.state.displacement.size() > 0) operators.state = of_one.state;
 }
 
+/// Counts nodes that imposed values hold below a surface in max_penetration.
+void add_held(const ContactInterface &interface, const FullMu &mu, Outputs &outputs) {
+  constexpr double round_off = 1e-10;
+  double deepest = 0, nodes = 0;
+  for (const auto &[left, size] : interface.held_gaps(mu))
+    if (-left > round_off * size) {
+      deepest = std::max(deepest, -left);
+      ++nodes;
+    }
+  if (nodes == 0) return;
+  outputs.held_nodes = nodes;
+  outputs.held_depth = deepest;
+  outputs.max_penetration = std::max(outputs.max_penetration.value_or(0), deepest);
+}
+
 /// Throws bad_input where Nitsche's method would need the stress of imposed values.
 void check_imposed(const ContactRecipe &recipe, const InterfaceMesh &mesh) {
   if (recipe.formulation == Formulation::nitsche &&
@@ -227,7 +242,8 @@ void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOper
   const MirrorPlanes &mirrors = contact.interfaces.front()->mirrors();
   if (contact.interfaces.size() == 1) {
     contact.interfaces.front()->outputs(mu, operators, lambda, least, outputs);
-    return make_whole(mirrors, outputs);
+    make_whole(mirrors, outputs);
+    return add_held(*contact.interfaces.front(), mu, outputs);
   }
   Index node = 0;
   for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
@@ -241,6 +257,7 @@ void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOper
     interface.outputs(mu, part, lambda.segment(contact.first_row[i], interface.dual().size()),
                       least, one);
     make_whole(mirrors, one);
+    add_held(interface, mu, one);
     add_contact(one, outputs);
   }
 }

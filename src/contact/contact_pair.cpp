@@ -1,5 +1,6 @@
 #include "rbvi/contact/contact_pair.hpp"
 
+#include "rbvi/contact/contact_area.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/lagrange.hpp"
@@ -188,16 +189,68 @@ PairOperators pair_operators(const Partners &partners, const PairMultipliers &mu
   }
   result.b = weak.matrix();
   result.nodal_gap.resize(std::ssize(partners.vertices));
-  result.normals.reserve(partners.vertices.size());
-  for (const PairPoint &p : partners.vertices) {
-    nodal.add(p, 1);
+  for (Index k = 0; k < result.nodal_gap.size(); ++k) {
+    nodal.add(partners.vertices[k], 1);
     nodal.end_row();
-    result.nodal_gap[std::ssize(result.paired)] = p.gap;
+    const PairPoint &p = partners.vertices[k];
+    result.nodal_gap[k] = p.gap;
     result.paired.push_back(partners.slave.node(p.slave_edge, p.s > 0.5 ? 1 : 0));
-    result.normals.push_back({-p.normal[0], -p.normal[1], 0});
   }
   result.nodal_b = nodal.matrix();
   return result;
+}
+
+double tangential_force(const Partners &partners, const PairMultipliers &multipliers,
+                        const Vector &shear) {
+  double sum = 0;
+  for (const auto &[edge, begin, end] : partners.faced) {
+    const auto [first, last] = partners.hats[edge]; // of a weight that is linear along the edge
+    const auto weight = [&, a = first, b = last](double s) {
+      return (1 - s) * (4 * a - 2 * b) + s * (4 * b - 2 * a);
+    };
+    const double length = end - begin, from = length * weight(begin), to = length * weight(end);
+    sum += integral_of_magnitude(
+        {from / 3 + to / 6, from / 6 + to / 3},
+        {multipliers.sum(shear, edge, begin), multipliers.sum(shear, edge, end)});
+  }
+  return sum;
+}
+
+SlaveLines slave_lines(const Partners &partners, bool whole) {
+  const CurveShape &shape = partners.slave.shape();
+  const auto vertex_at = [&](Index edge, double s) { return shape.ends[edge][s > 0.5 ? 1 : 0]; };
+  std::vector<const PairPoint *> of_vertex(shape.vertices(), nullptr);
+  for (const PairPoint &p : partners.vertices)
+    of_vertex[vertex_at(p.slave_edge, p.s)] = &p;
+  auto cut = partners.cuts.begin();
+  std::vector<std::array<int, 2>> at_vertex(shape.vertices(), {-1, -1}); // facing nothing, or not
+  SlaveLines lines;
+  const auto place = [&](Index edge, double s, bool faced) {
+    const bool inside = s > 0 && s < 1;
+    int own = -1, &number = inside ? own : at_vertex[vertex_at(edge, s)][faced ? 1 : 0];
+    if (number >= 0) return number;
+    number = static_cast<int>(std::ssize(lines.places));
+    lines.places.push_back({edge, s});
+    lines.partners.push_back(!faced ? nullptr : inside ? &*cut++ : of_vertex[vertex_at(edge, s)]);
+    return number;
+  };
+  const auto add = [&](Index edge, double begin, double end, bool faced) {
+    if (!(end > begin) || !(faced || whole)) return;
+    for (const double s : {begin, end})
+      lines.cells.push_back(place(edge, s, faced));
+    lines.faced.push_back(faced);
+  };
+  auto part = partners.faced.begin();
+  for (Index e = 0; e < shape.edges(); ++e) {
+    double last = 0;
+    for (; part != partners.faced.end() && part->edge == e; ++part) {
+      add(e, last, part->begin, false);
+      add(e, part->begin, part->end, true);
+      last = part->end;
+    }
+    add(e, last, 1, false);
+  }
+  return lines;
 }
 
 Partners find_partners(NodalCurve slave, NodalCurve master, const PairDiscretisation &how,
@@ -206,6 +259,12 @@ Partners find_partners(NodalCurve slave, NodalCurve master, const PairDiscretisa
   const PartnerSearch search(result.slave, result.master, std::move(field));
   result.segments = search.segments();
   result.vertices = search.at_vertices();
+  result.faced = search.faced();
+  std::vector<CurvePlace> cuts;
+  for (const auto &[edge, begin, end] : result.faced)
+    for (const double s : {begin, end})
+      if (s > 0 && s < 1) cuts.push_back({edge, s});
+  result.cuts = search.at(cuts);
   const std::span<const EdgePoint> rule = how.projection == PairProjection::vertical
                                               ? std::span<const EdgePoint>(two_points)
                                               : std::span<const EdgePoint>(edge_quadrature);
@@ -226,10 +285,11 @@ Partners find_partners(NodalCurve slave, NodalCurve master, const PairDiscretisa
     const auto [first, last] = hats[p.slave_edge]; // of a weight that is linear along the edge
     p.weight *= (1 - p.s) * (4 * first - 2 * last) + p.s * (4 * last - 2 * first);
   }
-  for (PairPoint &p : result.vertices)
-    (void)search.project(p);
-  set_gaps(result.slave, result.master, result.points);
-  set_gaps(result.slave, result.master, result.vertices);
+  for (std::vector<PairPoint> *points : {&result.vertices, &result.cuts})
+    for (PairPoint &p : *points)
+      (void)search.project(p);
+  for (std::vector<PairPoint> *points : {&result.points, &result.vertices, &result.cuts})
+    set_gaps(result.slave, result.master, *points);
   return result;
 }
 

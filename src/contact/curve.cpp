@@ -202,22 +202,23 @@ SparseMatrix linear_gram(const std::vector<Point> &points, const CurveShape &sha
 }
 
 Grid polyline(const Scene &scene, const FullMu &mu, const InterfaceMesh &mesh,
-              const std::vector<Index> &nodes, const Vector &u) {
-  const Vector moved = moved_nodes(scene, mu, mesh, u);
-  std::vector<int> shown(mesh.points.size(), -1), edges;
-  std::vector<Point> points;
-  Vector of_nodes(3 * std::ssize(nodes));
-  for (const Index node : nodes) {
-    const Index k = std::ssize(points);
-    shown[node] = static_cast<int>(k);
-    points.push_back(mesh.points[node]);
-    of_nodes.segment<3>(3 * k) = moved.segment<3>(3 * node);
-  }
+              const std::vector<CurvePlace> &places, std::vector<int> cells, const Vector &u) {
   const auto [vertices, shape] = first_curve(mesh);
-  for (const auto &[a, b] : shape.ends)
-    if (const int i = shown[vertices[a]], j = shown[vertices[b]]; i >= 0 && j >= 0)
-      edges.insert(edges.end(), {i, j});
-  return {mapped_points(scene, mu, points), edges, 2, {{"u", of_nodes, "m"}}, {}, {}};
+  std::vector<Point> ends;
+  for (const int vertex : vertices)
+    ends.push_back(mesh.points[vertex]);
+  const Matrix mapped = mapped_points(scene, mu, ends);
+  const Vector moved = moved_nodes(scene, mu, mesh, u);
+  Matrix points(std::ssize(places), scene.dim);
+  Vector of_nodes(3 * points.rows());
+  for (Index k = 0; k < points.rows(); ++k) {
+    const auto [edge, s] = places[k];
+    const auto [a, b] = shape.ends[edge];
+    points.row(k) = (1 - s) * mapped.row(a) + s * mapped.row(b);
+    of_nodes.segment<3>(3 * k) = (1 - s) * moved.segment<3>(Index{3} * vertices[a]) +
+                                 s * moved.segment<3>(Index{3} * vertices[b]);
+  }
+  return {std::move(points), std::move(cells), 2, {{"u", of_nodes, "m"}}, {}, {}};
 }
 
 void add_stress(const std::string &name, const Vector &values, bool of_edges, Grid &grid) {

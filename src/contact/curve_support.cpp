@@ -1,5 +1,6 @@
 // Contact of a curve with something rigid by multipliers: integrals over its edges, which ask at
 // each of their points what it faces, and the outputs.
+#include "rbvi/contact/contact_area.hpp"
 #include "rbvi/contact/curve.hpp"
 #include "rbvi/contact/entity_sum.hpp"
 #include "rbvi/contact/support.hpp"
@@ -69,9 +70,7 @@ public:
   double gap_error(const FullMu &mu, const Vector &u, const Vector &lambda) const override {
     return rbvi::gap_error(*this, scene_, facing_, mu, u, lambda);
   }
-  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override {
-    return support_fields(*this, scene_, facing_, mu, u, lambda);
-  }
+  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool) override;
 
   const EntitySum *entity_sum() const override { return follows_state() ? nullptr : this; }
   bool follows_state() const override { return facing_.follows_state; }
@@ -103,6 +102,7 @@ private:
   FacedPoint faced_at(const FullMu &mu, const Cell &edge, const TracePoint &at) const;
   Lift lift(const FullMu &mu, const ContactState &state, const Matrix &mapped,
             const Vector &lambda) const;
+  double tangential_force(const Matrix &mapped, const Vector &lambda) const;
   void add_edge(const FullMu &mu, Index edge, const std::vector<AtRest> &rest, const Vector &state,
                 const Vector &x, NodalCondition &condition) const;
 
@@ -233,13 +233,40 @@ CurveSupport::Lift CurveSupport::lift(const FullMu &mu, const ContactState &stat
   return result;
 }
 
+double CurveSupport::tangential_force(const Matrix &mapped, const Vector &lambda) const {
+  double sum = 0;
+  for (Index e = 0; e < mesh_.count() && dual_.components == 2; ++e) {
+    const std::span<const int> rows = rows_of(e);
+    const auto shear = [&](std::size_t a) { return rows[2 + a] < 0 ? 0 : lambda[rows[2 + a]]; };
+    const std::array<double, 2> ends{shear(0), shear(1)};
+    if (ends == std::array<double, 2>{}) continue;
+    const auto vertex = [&](int i) {
+      const int node = mesh_.nodes_of(e)[i];
+      return Point{mapped(node, 0), mapped(node, 1), 0};
+    };
+    sum += integral_of_magnitude(hat_weights(vertex(0), vertex(1), scene_.axisymmetric), ends);
+  }
+  return sum;
+}
+
+Grid CurveSupport::fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool) {
+  std::vector<std::array<Index, 2>> duals;
+  for (Index e = 0; e < mesh_.count(); ++e) {
+    const std::span<const int> rows = rows_of(e);
+    const std::size_t first = mesh_.nodes_of(e)[0] == shape_.ends[e][0] ? 0 : 1;
+    duals.push_back({rows[first], rows[1 - first]});
+  }
+  return support_fields(*this, scene_, facing_, duals, mu, u, lambda);
+}
+
 void CurveSupport::outputs(const FullMu &mu, const ContactOperators &operators,
                            const Vector &lambda, double, Outputs &outputs) const {
   const Matrix mapped = mapped_points(scene_, mu, vertices_of(mesh_, shape_));
   const Lift unit = lift(mu, operators.state, mapped, lambda);
   const Vector arc = arc_lengths(mapped), s = from_middle(middle_, arc, arc[arc.size() - 1]);
-  support_outputs({lambda, operators.weights, unit.horizontal, unit.vertical, bound(mu), images_,
-                   middle_, s.size() > 0 ? Vector(s(dual_.vertices)) : s},
+  support_outputs({lambda, operators.weights, unit.horizontal, unit.vertical, bound(mu),
+                   tangential_force(mapped, lambda), images_, middle_,
+                   s.size() > 0 ? Vector(s(dual_.vertices)) : s},
                   outputs);
   if (scene_.axisymmetric) drop_plane_outputs(outputs);
   for (std::size_t k = 0; k < shape_.pieces.size(); ++k) {

@@ -164,6 +164,29 @@ void EntitySum::set_dual(Index vertices, int components, bool lumped, const Spar
   set_rows();
 }
 
+std::vector<std::array<double, 2>> EntitySum::held_gaps(const FullMu &mu) const {
+  std::vector<Index> held;
+  std::vector<Point> points;
+  for (Index v = 0; v < std::ssize(dual_of_vertex_); ++v)
+    if (!can_move(static_cast<int>(v))) {
+      held.push_back(v);
+      points.push_back(mesh_.points[v]);
+    }
+  if (held.empty()) return {};
+  const std::vector<Point> mapped = images(scene_.map, mu, points);
+  const Vector imposed = imposed_values(scene_, mu, mesh_.points, mesh_.imposed_by);
+  std::vector<std::array<double, 2>> gaps;
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    Point displacement{};
+    for (int c = 0; c < mesh_.components && imposed.size() > 0; ++c)
+      displacement[c] = imposed[held[k] * mesh_.components + c];
+    const PointConstraint at = constraint_at(mu, points[k], mapped[k], displacement);
+    gaps.push_back({at.gap - dot(at.direction, displacement),
+                    std::abs(at.gap) + norm(displacement) + norm(mapped[k])});
+  }
+  return gaps;
+}
+
 std::vector<bool> EntitySum::entities_at(const WantedNodes &wanted) const {
   if (wanted.empty()) return {};
   std::vector<bool> result(mesh_.count(), false);

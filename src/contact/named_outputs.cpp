@@ -1,5 +1,6 @@
 #include "rbvi/contact/named_outputs.hpp"
 
+#include "rbvi/contact/contact_lines.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/output_sums.hpp"
@@ -10,62 +11,22 @@ namespace rbvi {
 
 namespace {
 
-/// Fields at both ends of each piece of an interface.
-using Traces = std::vector<std::array<OutputFields, 2>>;
-
-/// A field at vertices, or one that is constant on pieces; NaN where the grid has none of this
-/// name.
-void put_field(const Grid &grid, const std::string &name, std::size_t field, Traces &traces) {
-  const auto named = [&](const std::vector<Field> &fields) {
-    return std::ranges::find(fields, name, &Field::name);
+void add_lines(const std::vector<ContactLine> &lines, bool turned, OutputLines &sums) {
+  const auto along = [&](std::array<OutputFields, 2> ContactLine::*fields) {
+    return [&lines, fields](std::size_t line, double s) {
+      const auto &[first, last] = lines[line].*fields;
+      OutputFields at;
+      for (std::size_t i = 0; i < at.size(); ++i)
+        at[i] = (1 - s) * first[i] + s * last[i];
+      return at;
+    };
   };
-  const auto of_pieces = named(grid.of_cells);
-  const auto of_nodes = named(grid.of_nodes);
-  for (std::size_t k = 0; k < grid.cells.size(); ++k) {
-    double &value = traces[k / 2][k % 2][field];
-    if (of_pieces != grid.of_cells.end())
-      value = of_pieces->values[static_cast<Index>(k / 2)];
-    else if (of_nodes != grid.of_nodes.end())
-      value = of_nodes->values[grid.cells[k]];
-  }
-}
-
-Traces traces_of(const Grid &grid) {
-  if (grid.per_cell != 2) throw bad_input("outputs over contact are of curves");
-  OutputFields none;
-  none.fill(std::numeric_limits<double>::quiet_NaN());
-  Traces traces(grid.cells.size() / 2, {none, none});
-  const auto moved = std::ranges::find(grid.of_nodes, "u", &Field::name);
-  for (std::size_t k = 0; k < grid.cells.size(); ++k) {
-    const Index node = grid.cells[k];
-    OutputFields &at = traces[k / 2][k % 2];
-    at[field::x] = grid.points(node, 0);
-    at[field::y] = grid.points(node, 1);
-    at[field::ux] = moved->values[3 * node];
-    at[field::uy] = moved->values[3 * node + 1];
-  }
-  put_field(grid, "pressure", field::pressure, traces);
-  put_field(grid, "gap", field::gap, traces);
-  put_field(grid, "tangential_stress", field::tangential, traces);
-  put_field(grid, "slip", field::slip, traces);
-  return traces;
-}
-
-void add_pieces(const Traces &traces, bool turned, OutputLines &lines) {
-  lines.add(
-      traces.size(),
-      [&](std::size_t piece, double s) {
-        const auto &[first, last] = traces[piece];
-        OutputFields fields;
-        for (std::size_t i = 0; i < fields.size(); ++i)
-          fields[i] = (1 - s) * first[i] + s * last[i];
-        return fields;
-      },
-      [&](std::size_t piece, const OutputFields &fields) {
-        const auto &[first, last] = traces[piece];
-        return std::hypot(last[field::x] - first[field::x], last[field::y] - first[field::y]) *
-               circumference(turned, {fields[field::x], 0, 0});
-      });
+  sums.add(lines.size(), along(&ContactLine::fields), along(&ContactLine::seen),
+           [&](std::size_t line, const OutputFields &at) {
+             const auto &[first, last] = lines[line].fields;
+             return std::hypot(last[field::x] - first[field::x], last[field::y] - first[field::y]) *
+                    circumference(turned, {at[field::x], 0, 0});
+           });
 }
 
 } // namespace
@@ -84,7 +45,7 @@ void check_outputs(const Scene &scene) {
 void add_named_outputs(const Scene &scene, const Contact &contact, const FullMu &mu,
                        const OutputSources &sources, const Vector &lambda, Outputs &outputs) {
   outputs.named.clear();
-  std::vector<std::optional<Traces>> traces(contact.interfaces.size());
+  std::vector<std::optional<std::vector<ContactLine>>> of(contact.interfaces.size());
   for (std::size_t k = 0; k < scene.outputs.size(); ++k) {
     const OutputForm &form = scene.outputs[k];
     double value = 0;
@@ -92,22 +53,20 @@ void add_named_outputs(const Scene &scene, const Contact &contact, const FullMu 
       value = sources.of_cells(static_cast<int>(k));
     } else {
       OutputLines lines(form, mu, scene.mirrors);
-      for (std::size_t i = 0; i < traces.size(); ++i) {
+      for (std::size_t i = 0; i < of.size(); ++i) {
         if (std::ranges::find(form.at, contact.names[i]) == form.at.end()) continue;
         ContactInterface &interface = *contact.interfaces[i];
-        if (!traces[i])
-          traces[i] = traces_of(
+        if (!of[i])
+          of[i] = contact_lines(
               interface.fields(mu, sources.of_interface(i),
-                               lambda.segment(contact.first_row[i], interface.dual().size())));
-        add_pieces(*traces[i], scene.axisymmetric, lines);
+                               lambda.segment(contact.first_row[i], interface.dual().size()), true),
+              interface.bound(mu), sources.least_pressure);
+        add_lines(*of[i], scene.axisymmetric, lines);
       }
       value = output_value(form, lines.sums());
     }
-    if (!std::isfinite(value))
-      throw failure("the output '" + form.name +
-                    "' has no value: nothing is where its condition holds, or a field is not "
-                    "there (tangential needs friction)");
-    outputs.named.push_back({form.name, value});
+    outputs.named.push_back(
+        {form.name, std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN()});
   }
 }
 

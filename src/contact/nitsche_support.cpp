@@ -52,6 +52,7 @@ public:
       for (std::size_t end = 0; end < 2; ++end)
         layer_.cells[e].ends[end] =
             number[mesh_.nodes_of(e)[simplex_edges[layer_.cells[e].edge][end]]];
+    ends_ = shape.ends;
     NitscheCurve &curve_here = layer_.curves.front();
     curve_here.facing = on_arcs(std::move(curve_here.facing), mesh_);
     curve_here.middle = middle_of(scene.mirrors, dual_.points, is_one_open_piece(shape));
@@ -88,12 +89,17 @@ public:
   double gap_error(const FullMu &mu, const Vector &u, const Vector &lambda) const override {
     return rbvi::gap_error(*this, scene_, layer_.curves.front().facing, mu, u, lambda);
   }
-  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override {
-    return support_fields(*this, scene_, layer_.curves.front().facing, mu, u, lambda);
+  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool) override {
+    Grid grid = support_fields(*this, scene_, layer_.curves.front().facing, ends_, mu, u, lambda);
+    const CurveFields here = nitsche_fields(layer_, 0, mu, at_columns(mesh_, u));
+    grid.of_nodes.push_back({"P_n", here.p_n, "Pa"});
+    if (layer_.friction()) grid.of_nodes.push_back({"P_tau", here.p_tau, "Pa"});
+    return grid;
   }
 
 private:
   NitscheLayer layer_;
+  std::vector<std::array<Index, 2>> ends_; ///< the vertices of each edge
 };
 
 /// "rigid_support" -> "nitsche_support", ...

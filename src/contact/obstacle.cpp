@@ -43,7 +43,7 @@ public:
 
   void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                double least, Outputs &outputs) const override;
-  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override;
+  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool) override;
 
 private:
   SparseMatrix gram() const;
@@ -116,7 +116,7 @@ void ObstacleInterface::outputs(const FullMu &, const ContactOperators &operator
       contact_area(at_vertices(operators.weights), at_vertices(pressed), simplices_, mesh_.dim + 1);
 }
 
-Grid ObstacleInterface::fields(const FullMu &mu, const Vector &u, const Vector &lambda) {
+Grid ObstacleInterface::fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool) {
   Matrix points = mapped_points(scene_, mu, mesh_.points);
   straighten_edges(mesh_.entities, mesh_.dim, mesh_.degree, points);
   Matrix pressure = Matrix::Zero(mesh_.nodes(), 1);

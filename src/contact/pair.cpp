@@ -1,5 +1,6 @@
 #include "rbvi/contact/pair.hpp"
 
+#include "rbvi/contact/contact_area.hpp"
 #include "rbvi/contact/facing.hpp"
 #include "rbvi/contact/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
@@ -43,8 +44,7 @@ public:
   void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                double least, Outputs &outputs) const override;
   double gap_error(const FullMu &mu, const Vector &u, const Vector &lambda) const override;
-  /// The slave curve; without cells where nothing of it faces the master curve.
-  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override;
+  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool whole) override;
 
 private:
   /// Both curves, whose nodes are those of the mesh.
@@ -56,8 +56,8 @@ private:
   Partners search(const FullMu &mu, const ContactState &state,
                   const std::vector<Point> &moved) const;
   Partners partners(const FullMu &mu, const ContactState &state) const;
-  PairOperators operators_of(const Partners &found, const ContactState &state) const;
-  PairOperators operators_at(const FullMu &mu, const ContactState &state) const;
+  ContactOperators operators_of(const Partners &found, const ContactState &state) const;
+  ContactOperators operators_at(const FullMu &mu, const ContactState &state) const;
   std::vector<std::array<bool, 2>> closed_ends() const;
   bool friction() const { return pair_.friction.law != FrictionLaw::none; }
 
@@ -149,7 +149,7 @@ Partners PairInterface::search(const FullMu &mu, const ContactState &state,
       nodes[k / 2][k % 2] += state.displacement[dof];
   }
   Partners found = found_between(curves(nodes));
-  for (std::vector<PairPoint> *points : {&found.points, &found.vertices})
+  for (std::vector<PairPoint> *points : {&found.points, &found.vertices, &found.cuts})
     set_gaps(at_rest.slave, at_rest.master, *points);
   return found;
 }
@@ -160,7 +160,7 @@ Partners PairInterface::partners(const FullMu &mu, const ContactState &state) co
   Partners found = at_rest_ ? *at_rest_ : search(mu, state, moved);
   if (moved.empty()) return found;
   const Curves by = curves(moved);
-  for (std::vector<PairPoint> *points : {&found.points, &found.vertices})
+  for (std::vector<PairPoint> *points : {&found.points, &found.vertices, &found.cuts})
     for (PairPoint &p : *points) {
       const Point apart = by.slave.at(p.slave_edge, p.s) - by.master.at(p.master_edge, p.t);
       p.gap += dot(p.normal, apart);
@@ -169,8 +169,9 @@ Partners PairInterface::partners(const FullMu &mu, const ContactState &state) co
   return found;
 }
 
-PairOperators PairInterface::operators_of(const Partners &found, const ContactState &state) const {
-  PairOperators operators =
+ContactOperators PairInterface::operators_of(const Partners &found,
+                                             const ContactState &state) const {
+  ContactOperators operators =
       pair_operators(found, multipliers_, mesh_.dofs, mesh_.columns, friction());
   if (!pair_.large) return operators;
   operators.segments = found.segments;
@@ -178,7 +179,7 @@ PairOperators PairInterface::operators_of(const Partners &found, const ContactSt
   return operators;
 }
 
-PairOperators PairInterface::operators_at(const FullMu &mu, const ContactState &state) const {
+ContactOperators PairInterface::operators_at(const FullMu &mu, const ContactState &state) const {
   try {
     return operators_of(partners(mu, state), state);
   } catch (const Error &error) { // the fault of this mu, not of the input
@@ -289,10 +290,13 @@ void PairInterface::outputs(const FullMu &mu, const ContactOperators &operators,
   outputs.ends_in_contact =
       image_count(scene_.mirrors) *
       ends_in_contact(multipliers_, *slave_, shares, pressure, least, closed_ends());
-  if (friction()) friction_outputs(own_images, operators.weights, lambda, bound(mu), outputs);
   if (is_of_heights(pair_)) return;
+  const Partners found = partners(mu, operators.state);
+  if (friction())
+    friction_outputs(own_images, tangential_force(found, multipliers_, lambda.tail(count)),
+                     operators.weights, lambda, bound(mu), outputs);
   Point force{}; // on the slave
-  for (const PairPoint &p : partners(mu, operators.state).points) {
+  for (const PairPoint &p : found.points) {
     const Point tau{p.normal[1], -p.normal[0], 0};
     force = force + p.weight * multipliers_.sum(pressure, p.slave_edge, p.s) * p.normal;
     if (friction())
@@ -303,37 +307,43 @@ void PairInterface::outputs(const FullMu &mu, const ContactOperators &operators,
   if (scene_.axisymmetric) drop_plane_outputs(outputs);
 }
 
-Grid PairInterface::fields(const FullMu &mu, const Vector &u, const Vector &lambda) {
-  const Vector state = at_columns(mesh_, u);
+Grid PairInterface::fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool whole) {
+  const Vector state = at_columns(mesh_, u), moved = moved_nodes(scene_, mu, mesh_, u);
   const Partners found = partners(mu, {state});
-  const PairOperators pair = operators_of(found, {state});
-  if (pair.paired.size() < 2) return {};
-  Grid grid = polyline(scene_, mu, mesh_, pair.paired, u);
-  add_gap(pair.nodal_gap - pair.nodal_b * state, pair.normals, grid);
-  const Vector moved = moved_nodes(scene_, mu, mesh_, u);
-  std::vector<Point> nodes;
-  for (Index k = 0; k < mesh_.nodes(); ++k)
-    nodes.push_back({moved[3 * k], moved[3 * k + 1], 0});
-  const Curves by = curves(nodes);
-  Vector slip(std::ssize(found.vertices));
-  for (Index i = 0; i < slip.size(); ++i) {
-    const PairPoint &p = found.vertices[i];
-    slip[i] = slip_along(pair.normals[i],
-                         by.slave.at(p.slave_edge, p.s) - by.master.at(p.master_edge, p.t));
+  const SlaveLines of = slave_lines(found, whole);
+  Grid grid = polyline(scene_, mu, mesh_, of.places, of.cells, u);
+  std::vector<Point> free(mesh_.points.size(), Point{}), all(mesh_.points.size());
+  for (std::size_t k = 0; k < 2 * free.size(); ++k) {
+    if (mesh_.dofs[k] >= 0) free[k / 2][k % 2] = state[mesh_.dofs[k]];
+    all[k / 2][k % 2] = moved[3 * static_cast<Index>(k / 2) + static_cast<Index>(k % 2)];
   }
-  grid.of_nodes.push_back({"slip", slip, "m"});
+  const Curves by_free = curves(free), by_all = curves(all);
+  const auto apart = [](const Curves &by, const PairPoint &p) {
+    return by.slave.at(p.slave_edge, p.s) - by.master.at(p.master_edge, p.t);
+  };
   const bool constant = multipliers_.space() == MultiplierSpace::macro_edges;
-  std::vector<bool> shown(slave_->vertices(), false);
-  std::vector<Index> of_values; // the multiplier of each edge, or vertex, that is shown
-  for (const Index vertex : pair.paired)
-    shown[vertex] = true;
-  for (Index e = 0; e < slave_->edges() && constant; ++e)
-    if (shown[slave_->ends[e][0]] && shown[slave_->ends[e][1]])
-      of_values.push_back(multipliers_.on_edge(e)[0]);
-  if (!constant) of_values = pair.paired;
-  const Index count = multipliers_.count();
-  add_stress("pressure", lambda.head(count)(of_values), constant, grid);
-  if (friction()) add_stress("tangential_stress", lambda.tail(count)(of_values), constant, grid);
+  const Index nodes = std::ssize(of.places), edges = std::ssize(of.faced),
+              values = constant ? edges : nodes, count = multipliers_.count();
+  Vector gap = Vector::Constant(nodes, std::numeric_limits<double>::quiet_NaN()), slip = gap,
+         pressure = Vector::Zero(values), shear = pressure;
+  const auto put_stress = [&](Index k, const CurvePlace &at) {
+    pressure[k] = multipliers_.sum(lambda.head(count), at.edge, at.s);
+    if (friction()) shear[k] = multipliers_.sum(lambda.tail(count), at.edge, at.s);
+  };
+  std::vector<Point> normals(of.places.size(), Point{});
+  for (Index k = 0; k < nodes; ++k)
+    if (const PairPoint *p = of.partners[k]) {
+      normals[k] = {-p->normal[0], -p->normal[1], 0};
+      gap[k] = p->gap + dot(p->normal, apart(by_free, *p));
+      slip[k] = slip_along(normals[k], apart(by_all, *p));
+      if (!constant) put_stress(k, of.places[k]);
+    }
+  for (Index k = 0; k < edges && constant; ++k)
+    if (of.faced[k]) put_stress(k, of.places[of.cells[2 * k]]);
+  add_gap(gap, normals, grid);
+  grid.of_nodes.push_back({"slip", slip, "m"});
+  add_stress("pressure", pressure, constant, grid);
+  if (friction()) add_stress("tangential_stress", shear, constant, grid);
   return grid;
 }
 

@@ -277,6 +277,22 @@ std::vector<PairPoint> PartnerSearch::at_vertices() const {
   return at(places);
 }
 
+std::vector<FacedEdge> PartnerSearch::faced() const {
+  std::vector<FacedEdge> result;
+  for (const FacedPart &part : parts_)
+    for (Index e = part.begin.edge; e <= part.end.edge; ++e) {
+      const double begin = e == part.begin.edge ? part.begin.s : 0,
+                   end = e == part.end.edge ? part.end.s : 1;
+      if (end - begin <= least_part) continue;
+      if (!result.empty() && result.back().edge == e && begin - result.back().end <= least_part)
+        result.back().end = end;
+      else
+        result.push_back({e, begin > least_part ? begin : 0, end});
+      if (1 - end <= least_part) result.back().end = 1;
+    }
+  return result;
+}
+
 std::vector<Index> PartnerSearch::segments() const {
   constexpr double round_off = 1e-8;
   std::vector<Index> result;

@@ -103,16 +103,30 @@ double gap_error(const ContactInterface &interface, const Scene &scene, const Fa
 }
 
 Grid support_fields(const ContactInterface &interface, const Scene &scene, const Facing &facing,
-                    const FullMu &mu, const Vector &u, const Vector &lambda) {
+                    const std::vector<std::array<Index, 2>> &duals, const FullMu &mu,
+                    const Vector &u, const Vector &lambda) {
   const InterfaceMesh &mesh = interface.mesh();
-  const std::vector<Index> &vertices = interface.dual().vertices;
-  const auto count = static_cast<Index>(vertices.size());
-  Grid grid = polyline(scene, mu, mesh, vertices, u);
+  const auto [vertices, shape] = first_curve(mesh);
+  std::vector<CurvePlace> places;
+  std::vector<int> cells, shown(vertices.size(), -1);
+  std::vector<Index> dual_of; // of each place
+  for (Index e = 0; e < shape.edges(); ++e)
+    for (const std::size_t end : {0, 1}) {
+      int &node = shown[shape.ends[e][end]];
+      if (node < 0 || dual_of[node] != duals[e][end]) { // a pressure may end at a vertex
+        node = static_cast<int>(std::ssize(places));
+        places.push_back({e, static_cast<double>(end)});
+        dual_of.push_back(duals[e][end]);
+      }
+      cells.push_back(node);
+    }
+  Grid grid = polyline(scene, mu, mesh, places, std::move(cells), u);
   const Vector moved = grid.of_nodes.front().values;
-  Vector gap(count), slip(count);
+  const Index count = std::ssize(places), of_dual = interface.dual().nodes();
+  Vector gap(count), slip(count), pressure(count), shear(count);
   std::vector<Point> normals, ways;
   for (Index k = 0; k < count; ++k) {
-    const Index node = vertices[k];
+    const Index node = vertices[shape.ends[places[k].edge][places[k].s > 0 ? 1 : 0]];
     const Point &x = mesh.points[node];
     const PointConstraint at = interface.constraint_at(mu, x, {u[2 * node], u[2 * node + 1], 0});
     gap[k] = at.gap - at.direction[0] * u[2 * node] - at.direction[1] * u[2 * node + 1];
@@ -121,11 +135,13 @@ Grid support_fields(const ContactInterface &interface, const Scene &scene, const
     if (facing.partner)
       ways.push_back(facing.partner(mu, x) - Point{grid.points(k, 0) + moved[3 * k],
                                                    grid.points(k, 1) + moved[3 * k + 1], 0});
+    pressure[k] = dual_of[k] < 0 ? 0 : lambda[dual_of[k]];
+    shear[k] = dual_of[k] < 0 || lambda.size() == of_dual ? 0 : lambda[of_dual + dual_of[k]];
   }
   add_gap(gap, normals, grid, ways);
   grid.of_nodes.push_back({"slip", slip, "m"});
-  add_stress("pressure", lambda.head(count), false, grid);
-  if (lambda.size() > count) add_stress("tangential_stress", lambda.tail(count), false, grid);
+  add_stress("pressure", pressure, false, grid);
+  if (lambda.size() > of_dual) add_stress("tangential_stress", shear, false, grid);
   return grid;
 }
 

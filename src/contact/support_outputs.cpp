@@ -7,14 +7,13 @@
 
 namespace rbvi {
 
-namespace {
-
-/// Below its bound by more than round-off, and than the law is met to.
-bool sticks(double tangential, double bound, double violation) {
-  return tangential < (1 - 1e-9) * bound - violation;
+double friction_violation(const Vector &tangential, const Vector &bounds) {
+  return std::max(0.0, (tangential.cwiseAbs() - bounds).maxCoeff());
 }
 
-} // namespace
+double sticks_by(double tangential, double bound, double violation) {
+  return std::max(0.0, (1 - 1e-9) * bound - violation - std::abs(tangential));
+}
 
 Middle middle_of(const MirrorPlanes &mirrors, const std::vector<Point> &points, bool open) {
   if (!open || mirrors.size() > 1) return Middle::none;
@@ -100,23 +99,24 @@ void support_outputs(const SupportState &state, Outputs &outputs) {
     outputs.centre_pressure =
         centre_pressure(pressure, state.s, *outputs.contact_measure / (halved ? 1 : 2), halved);
   if (state.lambda.size() > count)
-    friction_outputs(state.images, state.weights, state.lambda, state.bound, outputs);
+    friction_outputs(state.images, state.tangential_force, state.weights, state.lambda, state.bound,
+                     outputs);
 }
 
-void friction_outputs(const Vector &images, const Vector &weights, const Vector &lambda,
-                      const FrictionBound &bound, Outputs &outputs) {
+void friction_outputs(const Vector &images, double tangential_force, const Vector &weights,
+                      const Vector &lambda, const FrictionBound &bound, Outputs &outputs) {
   const Index count = weights.size();
-  const Vector pressure = lambda.head(count), shear = lambda.tail(count).cwiseAbs(),
+  const Vector pressure = lambda.head(count), shear = lambda.tail(count),
                bounds = values_of(bound, pressure);
   double stick = 0, sticking = 0;
-  const double violation = std::max(0.0, (shear - bounds).maxCoeff());
+  const double violation = friction_violation(shear, bounds);
   for (Index i = 0; i < count; ++i)
-    if (pressure[i] > 0 && sticks(shear[i], bounds[i], violation)) {
+    if (pressure[i] > 0 && sticks_by(shear[i], bounds[i], violation) > 0) {
       stick += weights[i];
       sticking += images[i];
     }
-  outputs.slip_directions = direction_count(lambda.tail(count), pressure);
-  outputs.tangential_force = weights.dot(shear);
+  outputs.slip_directions = direction_count(shear, pressure);
+  outputs.tangential_force = tangential_force;
   outputs.stick_half_width = stick / 2;
   outputs.stick_nodes = sticking;
   outputs.friction_violation = violation;

@@ -13,9 +13,25 @@
 namespace rbvi {
 
 const std::vector<std::string> &output_fields() {
-  static const std::vector<std::string> names{
-      "x",  "y",  "ux",       "uy",       "pressure", "gap",      "tangential", "slip",         "u",
-      "nx", "ny", "sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "von_mises",  "strain_energy"};
+  static const std::vector<std::string> names{"x",
+                                              "y",
+                                              "ux",
+                                              "uy",
+                                              "pressure",
+                                              "gap",
+                                              "tangential",
+                                              "slip",
+                                              "u",
+                                              "nx",
+                                              "ny",
+                                              "sigma_xx",
+                                              "sigma_yy",
+                                              "sigma_zz",
+                                              "sigma_xy",
+                                              "von_mises",
+                                              "strain_energy",
+                                              "contact",
+                                              "stick"};
   return names;
 }
 
@@ -51,7 +67,8 @@ const std::vector<OutputColumn> &output_columns() {
        "residual of the problem that was solved, relative"},
       {"quadrature_residual", &Outputs::quadrature_residual, check,
        "Nitsche reduced: residual of the integrals over the whole curve"},
-      {"max_penetration", &Outputs::max_penetration, check, "largest penetration at a node"},
+      {"max_penetration", &Outputs::max_penetration, check,
+       "largest penetration at a node, held or not"},
       {"friction_violation", &Outputs::friction_violation, check,
        "largest tangential stress beyond its bound"},
       {"law_error_normal", &Outputs::law_error_normal, check,
@@ -78,13 +95,14 @@ void add_contact(const Outputs &one, Outputs &all) {
     if (const std::optional<double> &more = one.*member)
       total = !total ? *more : sum ? *total + *more : std::max(*total, *more);
   };
-  for (const auto member :
-       {&Outputs::normal_force, &Outputs::tangential_force, &Outputs::reaction,
-        &Outputs::horizontal_reaction, &Outputs::contact_measure, &Outputs::contact_nodes,
-        &Outputs::stick_nodes, &Outputs::ends_in_contact, &Outputs::free_nodes})
+  for (const auto member : {&Outputs::normal_force, &Outputs::tangential_force, &Outputs::reaction,
+                            &Outputs::horizontal_reaction, &Outputs::contact_measure,
+                            &Outputs::contact_nodes, &Outputs::stick_nodes,
+                            &Outputs::ends_in_contact, &Outputs::free_nodes, &Outputs::held_nodes})
     combine(member, true);
-  for (const auto member : {&Outputs::peak_pressure, &Outputs::max_penetration,
-                            &Outputs::friction_violation, &Outputs::slip_directions})
+  for (const auto member :
+       {&Outputs::peak_pressure, &Outputs::max_penetration, &Outputs::friction_violation,
+        &Outputs::slip_directions, &Outputs::held_depth})
     combine(member, false);
   all.interfaces.push_back(one);
 }
@@ -116,7 +134,8 @@ const char *name_of(std::optional<double> Outputs::*member) {
 
 void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutput &errors) {
   for (const OutputColumn &column : columns_of({outputs})) {
-    const std::string digits = formatted("%.10g", column.of(outputs).value());
+    const std::optional<double> value = column.of(outputs);
+    const std::string digits = value ? formatted("%.10g", *value) : "(no value)";
     out << std::left << std::setw(22) << column.name << digits;
     const auto error = errors.find(column.name);
     if (error != errors.end())
@@ -137,7 +156,7 @@ void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutpu
 
 void check_finite(const Outputs &outputs) {
   for (const OutputColumn &column : columns_of({outputs}))
-    if (const std::optional<double> value = column.of(outputs); !std::isfinite(*value))
+    if (const std::optional<double> value = column.of(outputs); value && !std::isfinite(*value))
       throw failure("the answer has no " + column.name + ", which is " + short_number(*value) +
                     ": is a load, a material or the mesh extreme, or a function of the scene not "
                     "finite there?");
@@ -146,7 +165,8 @@ void check_finite(const Outputs &outputs) {
 std::optional<double> OutputColumn::of(const Outputs &outputs) const {
   if (value != nullptr) return outputs.*value;
   const auto found = std::ranges::find(outputs.named, name, &NamedOutput::name);
-  return found == outputs.named.end() ? std::optional<double>() : found->value;
+  return found == outputs.named.end() || std::isnan(found->value) ? std::optional<double>()
+                                                                  : found->value;
 }
 
 std::vector<OutputColumn> columns_of(const std::vector<Outputs> &rows) {
@@ -173,6 +193,18 @@ namespace {
 std::string end_warning(const std::string &who) {
   return who + ", beside which the body would touch too: a smaller indentation, offset or "
                "load, or a scene with a wider contact boundary";
+}
+
+/// Of one answer with such nodes: on which contact they are deepest.
+std::string held_warning(const Outputs &outputs) {
+  const auto deepest = std::ranges::max_element(outputs.interfaces, {}, &Outputs::held_depth);
+  const Outputs &one = deepest == outputs.interfaces.end() ? outputs : *deepest;
+  const double nodes = one.held_nodes.value_or(0);
+  return (one.name.empty() ? "" : one.name + ": ") + "imposed values hold " + short_number(nodes) +
+         (nodes == 1 ? " node" : " nodes") + " of the contact boundary up to " +
+         short_number(one.held_depth.value_or(0)) +
+         " below the surface: contact cannot move them and carries nothing there; max_penetration "
+         "counts them";
 }
 
 /// Of one answer that has such ends: "contact reaches ...", of several interfaces with the name.
@@ -253,6 +285,7 @@ void ResolutionTally::add(const Outputs &outputs) {
   const std::string warning = resolution_warning(outputs), invalidity = validity_warning(outputs);
   ++all;
   if (!invalidity.empty() && invalid++ == 0) first_invalid = invalidity;
+  if (outputs.held_nodes && held++ == 0) first_held = held_warning(outputs);
   const bool at_end = outputs.ends_in_contact.value_or(0) > 0;
   if (warning.empty() || (at_end ? at_ends : coarse)++ > 0) return;
   (at_end ? first_end : first) = warning;
@@ -265,7 +298,8 @@ void ResolutionTally::print(std::ostream &out, const char *answers) const {
                      : end_warning(std::to_string(at_ends) + " of " + std::to_string(all) + ' ' +
                                    answers + " touch an end of the contact boundary"))
         << '\n';
-  for (const auto &[count, text] : {std::pair{coarse, first}, {invalid, first_invalid}}) {
+  for (const auto &[count, text] :
+       {std::pair{coarse, first}, {invalid, first_invalid}, {held, first_held}}) {
     if (count == 0) continue;
     out << "warning: " << text;
     if (count > 1) out << " (the first of " << count << " such " << answers << ')';

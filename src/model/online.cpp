@@ -162,7 +162,9 @@ void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vec
     return u;
   };
   add_named_outputs(scene_, contact_, solution.mu,
-                    {of_interface, cell_outputs_.at(solution.mu, solution.u)}, lambda, outputs);
+                    {of_interface, cell_outputs_.at(solution.mu, solution.u),
+                     solution.least_pressure * std::max(0.0, lambda.maxCoeff())},
+                    lambda, outputs);
   if (faces_surfaces) add_gap_error(scene_, contact_, solution.mu, of_interface, lambda, outputs);
 }
 

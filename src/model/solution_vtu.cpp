@@ -80,7 +80,7 @@ Grid interface_grid(const State &state, const Contact &contact, std::size_t numb
     u.segment(static_cast<Index>(k) * components, components) =
         state.u.segment(nodes[k] * components, components);
   Grid grid = interface.fields(
-      state.mu, u, state.lambda.segment(contact.first_row[number], interface.dual().size()));
+      state.mu, u, state.lambda.segment(contact.first_row[number], interface.dual().size()), false);
   name_parameters(state.scene, state.mu, grid);
   grid.contacts = {contact.names[number]};
   return grid;

@@ -42,7 +42,8 @@ bool is_there(const std::string &name, Place place, bool membrane) {
     const auto at = static_cast<std::size_t>(std::ranges::find(output_fields(), name) - begin);
     return at >= first && at <= last;
   };
-  if (is_one_of(field::pressure, field::slip)) return place == Place::contact;
+  if (is_one_of(field::pressure, field::slip) || is_one_of(field::contact, field::stick))
+    return place == Place::contact;
   if (is_one_of(field::nx, field::ny)) return place == Place::boundary;
   if (is_one_of(field::sigma_xx, field::strain_energy)) return place != Place::contact && !membrane;
   return is_one_of(field::u, field::u) ? membrane : is_one_of(field::x, field::y) || !membrane;
@@ -57,7 +58,7 @@ void check_fields(const Reader &reader, const Scene &scene, const OutputForm &fo
     if (!is_there(name, form.place, scene.components == 1))
       throw bad_input("there is no '" + name + "' " +
                       (form.at.empty() ? "there" : "at '" + joined(form.at, "', '") + "'") +
-                      ": pressure, gap, tangential and slip are over contacts (" +
+                      ": pressure, gap, tangential, slip, contact and stick are over contacts (" +
                       contact_names(scene) +
                       "), nx and ny over boundaries, stresses and "
                       "strain_energy over boundaries, regions and at points of elastic bodies, u "

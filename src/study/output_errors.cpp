@@ -34,10 +34,11 @@ OutputError error_of(const OutputColumn &column, const std::vector<Outputs> &red
     values.push_back(*known);
     errors.push_back(std::abs(*found - *known));
   }
+  OutputError result{column.name};
+  if (errors.empty()) return result;
   const auto [low, high] = std::minmax_element(all.begin(), all.end());
   const double least = 1e-2 * magnitude(column, truth);
   const double range = std::max(*high - *low, least);
-  OutputError result{column.name};
   const auto count = static_cast<double>(values.size());
   for (std::size_t p = 0; p < values.size(); ++p) {
     const double size = std::max(std::abs(values[p]), least);
@@ -89,7 +90,7 @@ std::vector<OutputError> output_errors(const std::vector<Outputs> &reduced,
   std::vector<OutputError> errors;
   for (const OutputColumn &column : columns_of(truth))
     if (column.value != &Outputs::seconds && column.value != &Outputs::iterations &&
-        has(reduced, column))
+        has(reduced, column) && has(truth, column))
       errors.push_back(error_of(column, reduced, truth));
   return errors;
 }

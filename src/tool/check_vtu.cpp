@@ -69,7 +69,7 @@ Grid grid_of(const SerialMesh &mesh, const MeshSurface &surface) {
 Grid partners_of(const Scene &scene, ContactInterface &interface, const FullMu &mu) {
   const InterfaceMesh &mesh = interface.mesh();
   Grid grid = interface.fields(mu, Vector::Zero(mesh.nodes() * mesh.components),
-                               Vector::Zero(interface.dual().size()));
+                               Vector::Zero(interface.dual().size()), false);
   grid.of_cells.clear();
   const auto named = [&](const std::string &name) {
     return std::ranges::find(grid.of_nodes, name, &Field::name);

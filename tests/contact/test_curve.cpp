@@ -105,13 +105,19 @@ TEST(Polyline, ShowsMotionAndDisplacementAtTheMappedNodes) {
   InterfaceMesh mesh = two_curves(1);
   mesh.components = 2;
   const Vector u = Vector::LinSpaced(14, 0, 13);
-  const std::vector<Index> nodes{1, 2, 3};
-  const Grid grid = polyline(scene, {2}, mesh, nodes, u);
-  EXPECT_EQ(grid.cells, (std::vector{0, 1, 1, 2}));
+  const std::vector<Index> nodes{1, 2};
+  const Grid grid = polyline(scene, {2}, mesh, {{1, 0}, {2, 0}, {1, 0.25}}, {0, 2, 2, 1}, u);
+  EXPECT_EQ(grid.cells, (std::vector{0, 2, 2, 1}));
   EXPECT_EQ(grid.per_cell, 2);
   ASSERT_EQ(grid.of_nodes.size(), 1U);
   EXPECT_EQ(grid.of_nodes.front().name, "u");
-  for (Index k = 0; k < 3; ++k) {
+  const auto at_node = [&](Index k) -> Vector {
+    return grid.of_nodes.front().values.segment<3>(3 * k);
+  };
+  EXPECT_NEAR((at_node(2) - 0.75 * at_node(0) - 0.25 * at_node(1)).norm(), 0, 1e-14);
+  EXPECT_NEAR((grid.points.row(2) - 0.75 * grid.points.row(0) - 0.25 * grid.points.row(1)).norm(),
+              0, 1e-14);
+  for (Index k = 0; k < 2; ++k) {
     const Index node = nodes[k];
     const Point &x = mesh.points[node];
     EXPECT_EQ(grid.points(k, 0), 2 * x[0]);

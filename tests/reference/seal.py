@@ -71,6 +71,31 @@ def body(nu, n):
     return mesh, matrix, contact, motions, sides
 
 
+def width(place, force, share):
+    """Of the zone around the largest pressure, between both its ends. The zone beyond a node has force F and
+    moment M about it; of p like sqrt(z (2a - z)), z from the end, its length is 5 M / (2 F) / (1 + 0.043
+    length / a)."""
+    order = np.argsort(place)
+    place, force, share = place[order], force[order], share[order]
+    first = last = np.argmax(force / share)
+    while force[first - 1] > 0:
+        first -= 1
+    while force[last + 1] > 0:
+        last += 1
+    corners = np.flatnonzero(share < np.roll(share, 1))  # no middles of sides
+    half = (place[last] - place[first]) / 2
+
+    def end(node, way):
+        cut = corners[np.argmin(abs((place[node] - place[corners]) * way - 0.35 * half))]
+        away = (place - place[cut]) * way
+        beyond = np.where((away > 0) & (place >= place[first]) & (place <= place[last]), force, 0)
+        total = beyond.sum() + force[cut] / 2
+        length = 2.5 * (beyond * away).sum() / total
+        return place[cut] + way * length / (1 + 0.043 * length / half)
+
+    return end(last, 1) - end(first, -1)
+
+
 def values_at(mu, n):
     squeeze, friction, fluid, nu = mu
     mesh, matrix, contact, motions, sides = body(nu, n)
@@ -87,6 +112,8 @@ def values_at(mu, n):
     for name, part in parts.items():
         found |= {name + " force": p[part].sum(), name + " friction": -q[part].sum(),
                   name + " peak": (p[part] / sides[name][1]).max()}
+        x, (normal, tangent) = mesh.points[sides[name][0]], np.array(PLANES[name][2:])
+        found[name + " width"] = width(RADIUS * np.arctan2(x @ tangent, x @ normal), p[part], sides[name][1])
     pushed = found["wall force"] + found["bottom friction"] + found["lid friction"]
     assert abs(pushed - 2 * RADIUS * fluid * np.sin(np.radians(40))) < 1e-5
     return found
@@ -94,7 +121,7 @@ def values_at(mu, n):
 
 def stated(mu, quantity, value):
     """The uncertainty of a value of expected.csv."""
-    return {"force": 2e-5 * value, "friction": 2e-5, "peak": 5e-4 * value}[quantity.split()[1]]
+    return {"force": 2e-5 * value, "friction": 2e-5, "peak": 5e-4 * value, "width": 3e-3 * value}[quantity.split()[1]]
 
 
 if __name__ == "__main__":

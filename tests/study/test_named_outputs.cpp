@@ -3,14 +3,17 @@
 #include "../mesh/temporary_file.hpp"
 #include "reduced.hpp"
 
+#include "rbvi/io/output_table.hpp"
 #include "rbvi/model/online.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/scene/case.hpp"
+#include "rbvi/study/output_errors.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 
 #include <unistd.h>
 
@@ -284,14 +287,116 @@ TEST(NamedOutputs, AreRefusedWhereTheyAreNotKnown) {
   EXPECT_THROW(Problem(PETSC_COMM_WORLD, misspelt, {}), Error);
 }
 
+/// An empty cell, and no failure; errors are over the answers that have a value.
 TEST(NamedOutputs, OverNothingHaveNoValue) {
-  Problem problem(PETSC_COMM_WORLD, block("  none: {mean: pressure, where: x > 1 + level}\n"), {});
-  try {
-    HighFidelity(problem, {}).solve({1, 0.1, 0.3});
-    FAIL() << "a mean over nothing has a value";
-  } catch (const Error &error) {
-    EXPECT_NE(std::string(error.what()).find("the output 'none' has no value"), std::string::npos);
+  Problem problem(PETSC_COMM_WORLD, block("  none: {mean: pressure, where: x > 0.2 + level}\n"),
+                  {});
+  HighFidelity solver(problem, {});
+  const Outputs some = solver.solve({1, 0.1, 0.3}).outputs,
+                none = solver.solve({1, 0.1, 0.9}).outputs;
+  EXPECT_NEAR(values_of(some)["none"], 1, 1e-9);
+  EXPECT_TRUE(std::isnan(values_of(none)["none"]));
+  const ParameterSpace &space = problem.scene().parameters;
+  std::ostringstream table, text;
+  write_csv(table, space, {{1, 0.1, 0.9}, {1, 0.1, 0.3}}, {none, some});
+  EXPECT_NE(table.str().find(",none\n1,0.1,0.9,"), std::string::npos) << table.str();
+  EXPECT_NE(table.str().find(",\n1,0.1,0.3,"), std::string::npos) << "an empty last cell";
+  print_outputs(text, none);
+  EXPECT_NE(text.str().find("(no value)"), std::string::npos) << text.str();
+  for (const OutputError &error : output_errors({none, some, some}, {none, none, some}))
+    EXPECT_TRUE(error.name != "none" || error.max == 0);
+  for (const OutputError &error : output_errors({none}, {none}))
+    EXPECT_NE(error.name, "none");
+}
+
+/// The ends of the foot are held at its sides; between them uniaxial strain.
+TEST(NamedOutputs, AreOverTheWholeBoundaryBesideHeldNodes) {
+  const std::string hold = "imposed: {sides: {at: sides, ux: 0, uy: -2*d*y}, "
+                           "top: {at: top, uy: -d}}\n";
+  const std::string outputs = "  length: {integral: 1}\n  touching: {measure: contact}\n"
+                              "  closed: {measure: pressure > 0}\n  open: {max: abs(gap)}\n";
+  compare_balance(pressed(hold, outputs, "plane_strain", "", ""), {0.05, 10},
+                  [](std::map<std::string, double> found) {
+                    EXPECT_NEAR(found["length"], 1, 1e-12);
+                    EXPECT_NEAR(found["touching"], 1, 1e-12);
+                    EXPECT_NEAR(found["closed"], 1, 1e-12);
+                    EXPECT_NEAR(found["pressed"], 10 * 0.7 / (1.3 * 0.4) * 0.1, 1e-9);
+                    EXPECT_NEAR(found["open"], 0, 1e-12);
+                  });
+}
+
+/// One integral, whose sign changes inside an edge.
+TEST(NamedOutputs, OfTheTangentialStressAreTheTangentialForce) {
+  const std::string hold = "imposed: {top: {at: top, ux: 0.003, uy: -d}}\n";
+  const Scene scene = pressed(hold, "  own: {integral: abs(tangential)}\n", "plane_strain");
+  for (const bool turned : {false, true}) {
+    Scene one = scene;
+    if (turned)
+      one = pressed("imposed: {top: {at: top, ux: 0, uy: -d}}\n",
+                    "  own: {integral: abs(tangential)}\n", "axisymmetric");
+    Problem problem(PETSC_COMM_WORLD, one, {});
+    const Outputs outputs = HighFidelity(problem, {}).solve({0.05, 15}).outputs;
+    EXPECT_GT(outputs.tangential_force.value(), 0.01);
+    EXPECT_NEAR(values_of(outputs).at("own"), outputs.tangential_force.value(),
+                1e-12 * outputs.tangential_force.value());
   }
+}
+
+/// Of a block on another one that faces it in part.
+TEST(NamedOutputs, OfAContactThatFacesNothing) {
+  const auto scene = [](const std::string &shift) {
+    return make_scene(
+        read_case("rbvi: 1\nphysics: plane_strain\nmesh: {built_in: two_blocks, degree: 2}\n"
+                  "parameters: {d: {range: [0.02, 0.1], default: 0.05}, press: {range: [0.01, "
+                  "0.02], default: 0.015}}\nmap: ['y > 0 ? x + " +
+                      shift +
+                      " : x', y]\n"
+                      "materials: {rubber: {at: all, E: 15, nu: 0.3}}\n"
+                      "imposed: {top: {at: top, ux: 0, uy: -0.5 - press}, bottom: {at: bottom, "
+                      "ux: 0, uy: 0}}\n"
+                      "contact: {faces: {at: slave, against: master, multiplier: p1}}\n"
+                      "outputs: {length: {integral: 1}, force: {integral: pressure}, gap: {max: "
+                      "abs(gap)}, facing: {measure: gap < 1}, touching: {measure: contact}}\n",
+                  "blocks.yaml"),
+        {});
+  };
+  for (const double shift : {0.0, 0.33, 0.97}) {
+    SCOPED_TRACE(shift);
+    Problem problem(PETSC_COMM_WORLD, scene(std::to_string(shift)), {});
+    const Outputs outputs = HighFidelity(problem, {}).solve({0.05, 0.015}).outputs;
+    std::map<std::string, double> found = values_of(outputs);
+    EXPECT_NEAR(found["length"], 1, 1e-12);
+    EXPECT_NEAR(found["facing"], 1 - shift, 1e-9);
+    EXPECT_LE(found["touching"], 1 - shift + 1e-9);
+    EXPECT_NEAR(found["force"], outputs.normal_force.value(), 1e-9 * outputs.normal_force.value());
+  }
+}
+
+/// A body whose imposed sides go through the floor.
+TEST(NamedOutputs, HeldNodesBelowTheSurfaceCountAsPenetration) {
+  const Scene scene = pressed("imposed: {sides: {at: sides, ux: 0, uy: -d}}\n",
+                              "  lowest: {min: uy, at: sides}\n", "plane_strain", "", "");
+  const auto expect = [](const Outputs &outputs) {
+    EXPECT_NEAR(outputs.max_penetration.value(), 0.05, 1e-12);
+    EXPECT_EQ(outputs.held_nodes.value(), 2);
+    std::ostringstream text;
+    ResolutionTally tally;
+    tally.add(outputs);
+    tally.print(text);
+    EXPECT_NE(text.str().find("imposed values hold 2 nodes of the contact boundary up to 0.05 "
+                              "below the surface"),
+              std::string::npos)
+        << text.str();
+  };
+  {
+    Problem problem(PETSC_COMM_WORLD, scene, {});
+    expect(HighFidelity(problem, {}).solve({0.05, 15}).outputs);
+  }
+  Reduced made(scene, "grid:2,2");
+  made.reduce(testing_reduced::everything());
+  if (rank_of(PETSC_COMM_WORLD) != 0) return;
+  OnlineSolver online(made.model);
+  expect(online.outputs({0.05, 15}, online.solve({0.05, 15})));
 }
 
 } // namespace

@@ -80,8 +80,7 @@ private:
 /// multipliers, `weights` their integrals over the slave points that have a partner. A slave point
 /// beyond the ends of the master curve has none and contributes nothing.
 struct PairOperators : ContactOperators {
-  std::vector<Index> paired{};  ///< slave vertices that have a partner, increasing: rows of nodal_b
-  std::vector<Point> normals{}; ///< of these, out of the slave body
+  std::vector<Index> paired{}; ///< slave vertices that have a partner, increasing: rows of nodal_b
 };
 
 /// Rows of differences over both curves, one after the other. The points of a row are on few edges
@@ -119,6 +118,21 @@ private:
 /// Those of the normal multipliers, then with friction of the tangential ones.
 PairOperators pair_operators(const Partners &partners, const PairMultipliers &multipliers,
                              const std::vector<int> &dofs, Index columns, bool friction);
+
+/// The integral of the magnitude of the tangential stress of these multipliers over what faces
+/// something.
+double tangential_force(const Partners &partners, const PairMultipliers &multipliers,
+                        const Vector &shear);
+
+/// The slave curve as lines, cut where it begins and ends to face something.
+struct SlaveLines {
+  std::vector<CurvePlace> places;
+  std::vector<const PairPoint *> partners; ///< of the places; null: the end of lines without any
+  std::vector<int> cells;                  ///< two places each
+  std::vector<bool> faced;                 ///< of the cells
+};
+/// `whole`: the lines that face nothing, too. `partners` must outlive them.
+SlaveLines slave_lines(const Partners &partners, bool whole);
 
 /// Finds the partners of two curves: along the field of normals, or vertically, then the curves
 /// must be graphs (as_graph). Gaps are those of the curves. `hats`: of the slave edges, that the

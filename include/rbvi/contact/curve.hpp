@@ -126,10 +126,19 @@ Facing on_arcs(Facing facing, const InterfaceMesh &mesh);
 SparseMatrix linear_gram(const std::vector<Point> &points, const CurveShape &shape, int copies,
                          bool axisymmetric = false);
 
-/// The edges of the first boundary between these nodes of an interface, mapped, with the field "u"
-/// (motion + u). `u`: at the nodes of the mesh.
+/// A place on a curve.
+struct CurvePlace {
+  Index edge;
+  double s = 0;
+  double minus(const CurvePlace &other) const { // in edges
+    return static_cast<double>(edge - other.edge) + s - other.s;
+  }
+};
+
+/// Lines between places of the first boundary of an interface, mapped, with the field "u" (motion +
+/// u), linear on an edge. `cells`: two places each; `u`: at the nodes of the mesh.
 Grid polyline(const Scene &scene, const FullMu &mu, const InterfaceMesh &mesh,
-              const std::vector<Index> &nodes, const Vector &u);
+              const std::vector<CurvePlace> &places, std::vector<int> cells, const Vector &u);
 
 /// Adds a stress to a polyline: one value for each node, or for each edge, then also at the nodes,
 /// as the mean of the edges beside them weighted by length.

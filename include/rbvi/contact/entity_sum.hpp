@@ -50,6 +50,8 @@ public:
   void set_displacement(const FullMu &mu, Index entity, const ContactState &state, Cell &cell,
                         std::vector<double> &values) const;
 
+  std::vector<std::array<double, 2>> held_gaps(const FullMu &mu) const override;
+
 protected:
   EntitySum(const Scene &scene, InterfaceMesh mesh, int entity_dim);
   /// The dual functions are the hats of the first `vertices` nodes of the mesh that can move. The

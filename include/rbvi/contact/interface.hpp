@@ -171,6 +171,9 @@ public:
     return constraint_at(mu, x, scene_.map(mu, x), displacement);
   }
 
+  /// The gap that is left, no displacement counts, at every node that cannot move and has no
+  /// multiplier, and the size of what it is a difference of.
+  virtual std::vector<std::array<double, 2>> held_gaps(const FullMu & /*mu*/) const { return {}; }
   /// Fills the outputs of contact of the domain, with the numbers of nodes of the whole body:
   /// contact_outputs makes the others the whole's. `operators`: at least those of assemble_nodal,
   /// with the state; `lambda`: a node with at most `least` counts as free.
@@ -183,9 +186,9 @@ public:
     return 0;
   }
   /// The mapped interface with its pressure, gap, normal (out of the body; of a membrane in space,
-  /// downwards), to_partner, ...; no cell where nothing can touch. `u`: at its
-  /// nodes, node * components + c, without the motion.
-  virtual Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) = 0;
+  /// downwards), to_partner, ... `u`: at its nodes, node * components + c, without the motion.
+  /// `whole`: also where nothing is faced, without a pressure; gap and slip are NaN there.
+  virtual Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool whole) = 0;
 
   /// Separable interfaces: this one, as the sum over its entities. Null: the others.
   virtual const EntitySum *entity_sum() const { return nullptr; }

@@ -1,6 +1,7 @@
 // Outputs that a scene has under names of its own (Scene::outputs), of full and of reduced answers
-// alike. On a contact interface they are of its vertices with straight pieces between them, on
-// which pressure, gap, tangential stress, slip and displacement are linear; elsewhere of cells of
+// alike. On a contact interface they are of its whole boundary, with straight pieces between its
+// vertices on which pressure, gap, tangential stress, slip and displacement are linear
+// (contact/contact_lines.hpp); elsewhere of cells of
 // the mesh with their functions (element/output_cells.hpp). Axisymmetric: of the whole
 // circumference.
 #pragma once
@@ -19,10 +20,11 @@ struct OutputSources {
   /// boundaries impose, node * components + c.
   std::function<Vector(std::size_t i)> of_interface;
   std::function<double(int output)> of_cells; ///< values of those apart from contact
+  double least_pressure = 0; ///< with at most so much a node counts as out of contact
 };
 
-/// Sets Outputs::named. `lambda`: at the dual dofs. Throws failure for an extremum or a mean over
-/// nothing, or a field where it is not, such as a tangential stress without friction.
+/// Sets Outputs::named. `lambda`: at the dual dofs. NaN: an extremum or a mean over nothing, a slip
+/// where nothing is faced.
 void add_named_outputs(const Scene &scene, const Contact &contact, const FullMu &mu,
                        const OutputSources &sources, const Vector &lambda, Outputs &outputs);
 

@@ -28,15 +28,6 @@ struct Bend {
   double stretch, curvature;
 };
 
-/// A place on a curve.
-struct CurvePlace {
-  Index edge;
-  double s = 0;
-  double minus(const CurvePlace &other) const { // in edges
-    return static_cast<double>(edge - other.edge) + s - other.s;
-  }
-};
-
 /// A master edge with the part of the slave curve that faces it, and about where its partners are.
 struct FacedPart {
   Index master_edge;
@@ -45,6 +36,12 @@ struct FacedPart {
   double t_at(const CurvePlace &place) const {
     return t_begin + place.minus(begin) / end.minus(begin) * (t_end - t_begin);
   }
+};
+
+/// A part of a slave edge that faces something, 0 <= begin < end <= 1.
+struct FacedEdge {
+  Index edge;
+  double begin, end;
 };
 
 /// The edges of a piece between its sharp corners.
@@ -80,6 +77,8 @@ public:
   /// Those of the places that have a partner.
   std::vector<PairPoint> at(const std::vector<CurvePlace> &places) const;
   std::vector<PairPoint> at_vertices() const;
+  /// Along the slave curve, of an edge as long as they can be.
+  std::vector<FacedEdge> faced() const;
   /// Sets partner and normal of a point. Throws failure where it has no projection.
   Bend project(PairPoint &point) const;
   /// ContactOperators::segments.
@@ -106,6 +105,8 @@ struct Partners {
   std::vector<PairPoint> points{};   ///< of quadrature, with their weights
   std::vector<Bend> bends{};         ///< at their partners
   std::vector<PairPoint> vertices{}; ///< those of the slave curve that have a partner
+  std::vector<FacedEdge> faced{};
+  std::vector<PairPoint> cuts{}; ///< where these begin and end inside of an edge
 };
 
 } // namespace rbvi

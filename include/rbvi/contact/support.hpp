@@ -100,8 +100,10 @@ double gap_error(const ContactInterface &interface, const Scene &scene, const Fa
                  const FullMu &mu, const Vector &u, const Vector &lambda);
 
 /// The curve of a support with motion + u, gap, pressure and tangential stress; see
-/// ContactInterface::fields.
+/// ContactInterface::fields. `duals`: the dual node that each end of each edge of the curve has
+/// there, -1: none.
 Grid support_fields(const ContactInterface &interface, const Scene &scene, const Facing &facing,
-                    const FullMu &mu, const Vector &u, const Vector &lambda);
+                    const std::vector<std::array<Index, 2>> &duals, const FullMu &mu,
+                    const Vector &u, const Vector &lambda);
 
 } // namespace rbvi

@@ -33,7 +33,8 @@ struct SupportState {
   const Vector &push;    ///< multipliers: their work on a unit horizontal displacement, B e_x
   const Vector &lift;    ///< and on a vertical one, B e_y
   FrictionBound bound;
-  const Vector &images; ///< of each vertex
+  double tangential_force; ///< integral of the magnitude of the tangential stress
+  const Vector &images;    ///< of each vertex
   Middle middle;
   Vector s; ///< vertices: arc lengths from the middle; empty: it has none
 };
@@ -49,11 +50,16 @@ void drop_plane_outputs(Outputs &outputs);
 /// all images; components of the force that cancel are taken away.
 void make_whole(const MirrorPlanes &mirrors, Outputs &outputs);
 
-/// Of normal and tangential multipliers: tangential_force, stick_half_width, friction_violation (a
-/// pressure). A node sticks where it is below its bound by more than that. `images`: as in
-/// pressure_outputs.
-void friction_outputs(const Vector &images, const Vector &weights, const Vector &lambda,
-                      const FrictionBound &bound, Outputs &outputs);
+/// What tangential stresses miss of their bounds, at most; and what a node that sticks is below
+/// its bound by: more than that and than round-off (0: it does not).
+double friction_violation(const Vector &tangential, const Vector &bounds);
+double sticks_by(double tangential, double bound, double violation);
+
+/// Of normal and tangential multipliers: stick_half_width, friction_violation (a pressure), and
+/// tangential_force, which is this. A node sticks where it is below its bound by more than the
+/// violation. `images`: as in pressure_outputs.
+void friction_outputs(const Vector &images, double tangential_force, const Vector &weights,
+                      const Vector &lambda, const FrictionBound &bound, Outputs &outputs);
 
 /// Fills normal_force, contact_measure, contact_half_width (half of the measure), reaction,
 /// horizontal_reaction, peak_pressure, centre_pressure, the numbers of nodes and, with friction,

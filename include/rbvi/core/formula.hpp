@@ -32,8 +32,9 @@ Named<Traction> traction_of(const Formula &components);
 Named<PointMap> value_and_gradient_of(const Formula &value);
 /// What outputs may name beside parameters, in the order of output_fields(); what there is not at
 /// some place is NaN there. x, y: where the map takes the point; ux, uy, of a membrane u: the
-/// displacement, with the motion; of contact pressure, gap, tangential stress and slip; on
-/// boundaries the normal outwards; of the body stresses and the elastic energy of a volume.
+/// displacement, with the motion; of contact pressure, gap, tangential stress, slip and whether
+/// there is contact, and stick; on boundaries the normal outwards; of the body stresses and the
+/// elastic energy of a volume.
 namespace field {
 enum : std::size_t {
   x,
@@ -53,6 +54,8 @@ enum : std::size_t {
   sigma_xy,
   von_mises,
   strain_energy,
+  contact,
+  stick,
   count
 };
 }

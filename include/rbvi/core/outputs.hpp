@@ -14,7 +14,7 @@ namespace rbvi {
 
 struct NamedOutput {
   std::string name;
-  double value;
+  double value; ///< NaN: it has none here, such as a mean over nothing
 };
 
 /// A quantity that a scene does not have stays unset and has no column.
@@ -42,6 +42,9 @@ struct Outputs {
   /// those between the deformed bodies, over the largest approach; the share of the body where a
   /// strain or a rotation is above large_strain.
   std::optional<double> gap_error, strained;
+  /// Likewise: nodes that imposed values hold below the surface, where there is no multiplier, and
+  /// how deep.
+  std::optional<double> held_nodes, held_depth;
   std::optional<double> min_u;
   /// Residual of the problem that was solved, relative: stationarity, feasibility, complementarity;
   /// of a reduced answer that of the reduced problem, by Nitsche's method that of its equation.
@@ -84,6 +87,7 @@ struct OutputColumn {
   std::optional<double> Outputs::*value; ///< null: one of Outputs::named
   OutputKind kind;
   const char *says; ///< its definition, one line
+  /// Unset where the answer has no such value.
   std::optional<double> of(const Outputs &outputs) const;
 };
 
@@ -108,7 +112,7 @@ std::array<double, 2> penetration_at(const Vector &left, const Vector &gaps);
 /// Sets max_penetration and overlap from the largest of both.
 void set_penetration(const std::array<double, 2> &penetration, Outputs &outputs);
 
-/// Throws failure, naming it, where an output is not finite.
+/// Throws failure, naming it, where an output is not finite, unless it has no value.
 void check_finite(const Outputs &outputs);
 
 /// What is not accurate in this answer because contact reaches the end of its boundary, because so
@@ -124,11 +128,12 @@ std::string validity_warning(const Outputs &outputs);
 
 /// The warnings of several answers.
 struct ResolutionTally {
-  long all = 0;                                ///< answers
-  long at_ends = 0;                            ///< where contact reaches the end of its boundary
-  long coarse = 0;                             ///< others with a warning
-  long invalid = 0;                            ///< where small kinematics do not hold
-  std::string first_end, first, first_invalid; ///< the first warning of each
+  long all = 0;     ///< answers
+  long at_ends = 0; ///< where contact reaches the end of its boundary
+  long coarse = 0;  ///< others with a warning
+  long invalid = 0; ///< where small kinematics do not hold
+  long held = 0;    ///< where imposed values hold nodes below a surface
+  std::string first_end, first, first_invalid, first_held; ///< the first warning of each
   void add(const Outputs &outputs);
   /// One line for each of these, where there are any. `answers`: what they are called.
   void print(std::ostream &out, const char *answers = "answers") const;

@@ -7,6 +7,7 @@
 #include "rbvi/core/scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -27,15 +28,22 @@ public:
   /// measure is weighted by.
   template <class Fields, class Weight>
   void add(std::size_t lines, const Fields &fields, const Weight &weight) {
-    for (int image = 0; image < image_count(mirrors_); ++image)
-      add_image(
-          lines,
-          [&](std::size_t line, double s) {
-            OutputFields at = fields(line, s);
-            reflect(mirrors_, image, at);
-            return at;
-          },
-          weight);
+    add(lines, fields, fields, weight);
+  }
+  /// The same where the condition sees other fields. Where nothing is faced, so that there is a
+  /// pressure and no gap, what depends on the gap has no value and is left out.
+  template <class Fields, class Seen, class Weight>
+  void add(std::size_t lines, const Fields &fields, const Seen &seen, const Weight &weight) {
+    for (int image = 0; image < image_count(mirrors_); ++image) {
+      const auto reflected = [&, image](const auto &of) {
+        return [&, image](std::size_t line, double s) {
+          OutputFields at = of(line, s);
+          reflect(mirrors_, image, at);
+          return at;
+        };
+      };
+      add_image(lines, reflected(fields), reflected(seen), weight);
+    }
   }
 
   /// The measure and the integral, or of a maximum and a minimum these.
@@ -51,18 +59,21 @@ public:
   }
 
 private:
-  template <class Fields, class Weight>
-  void add_image(std::size_t lines, const Fields &fields, const Weight &weight) {
-    find_parts(lines, fields);
+  template <class Fields, class Seen, class Weight>
+  void add_image(std::size_t lines, const Fields &fields, const Seen &seen, const Weight &weight) {
+    find_parts(lines, seen);
     std::vector<double> weights(places().size() * parts_.size());
+    std::vector<bool> open(weights.size());
     evaluate(weights.size(), [&](std::size_t i) {
       const auto &[line, from, to] = parts_[i / places().size()];
       const auto &[s, share] = places()[i % places().size()];
       const OutputFields at = fields(line, from + (to - from) * s);
       weights[i] = (to - from) * share * weight(line, at);
+      open[i] = std::isnan(at[field::gap]) && !std::isnan(at[field::pressure]);
       return at;
     });
     for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (open[i] && std::isnan(results_[i])) continue;
       sums_.measure += weights[i];
       sums_.integral += weights[i] * results_[i];
       sums_.least = std::min(sums_.least, results_[i]);
