@@ -358,7 +358,7 @@ TEST(ObstacleInterface, FieldsAreThoseOfTheMappedRegion) {
   const InterfaceMesh mesh = square(2);
   const Vector u = Vector::LinSpaced(9, 0, 1), lambda = Vector::LinSpaced(9, 2, 3);
   const FullMu mu{0.7};
-  const Grid grid = scene.contacts.front().make(scene, mesh)->fields(mu, u, lambda);
+  const Grid grid = scene.contacts.front().make(scene, mesh)->fields(mu, u, lambda, false);
   EXPECT_EQ(grid.cells, mesh.entities);
   ASSERT_EQ(grid.of_nodes.size(), 4U);
   EXPECT_EQ(grid.of_nodes[0].values, lambda);
@@ -402,7 +402,7 @@ TEST(ObstacleInterface, FieldsOfDegreeTwoAreOnQuadraticCells) {
   const InterfaceMesh mesh = quadratic_square(2);
   const FullMu mu{0.7};
   const Vector u = Vector::LinSpaced(mesh.nodes(), 0, 1), lambda = Vector::LinSpaced(9, 2, 3);
-  const Grid grid = scene.contacts.front().make(scene, mesh)->fields(mu, u, lambda);
+  const Grid grid = scene.contacts.front().make(scene, mesh)->fields(mu, u, lambda, false);
   EXPECT_EQ(grid.cells, mesh.entities);
   EXPECT_EQ(grid.per_cell, 6);
   const Vector &pressure = grid.of_nodes[0].values, &gap = grid.of_nodes[1].values;

@@ -203,13 +203,13 @@ TEST(PairInterface, WithoutPartnersThereIsNothingToDraw) {
   const InterfaceMesh mesh = two_curves(1);
   const auto interface = scene.contacts.front().make(scene, mesh);
   const Vector u = Vector::Zero(2 * mesh.nodes()), lambda = Vector::Zero(4);
-  const Grid grid = interface->fields({0}, u, lambda);
+  const Grid grid = interface->fields({0}, u, lambda, false);
   EXPECT_EQ(grid.cells.size(), 16U);
   const auto normal = std::ranges::find(grid.of_nodes, "normal", &Field::name);
   ASSERT_NE(normal, grid.of_nodes.end());
   for (Index i = 0; i < 9; ++i)
     EXPECT_EQ(Vector(normal->values.segment<3>(3 * i)), (Vector{{0, -1, 0}})) << "out of the slave";
-  EXPECT_TRUE(interface->fields({3}, u, lambda).cells.empty());
+  EXPECT_TRUE(interface->fields({3}, u, lambda, false).cells.empty());
 }
 
 TEST(PairInterface, HasNoConstraintAtPointsByThemselves) {

@@ -352,7 +352,7 @@ TEST(Support, FieldsHaveTheNormalAndTheGapThatIsLeft) {
   const InterfaceMesh curve = support_curve(arc(6, 0.4), 1);
   const auto interface = rigid_support(scene.support).make(scene, curve);
   const Vector u = Vector::Constant(2 * curve.nodes(), 0.1), lambda = Vector::Zero(14);
-  const Grid grid = interface->fields({1.5}, u, lambda);
+  const Grid grid = interface->fields({1.5}, u, lambda, false);
   ASSERT_EQ(grid.of_nodes[1].name, "gap");
   ASSERT_EQ(grid.of_nodes[2].name, "normal");
   for (Index i = 0; i < curve.nodes(); ++i) {
