@@ -54,6 +54,32 @@ OutputError error_of(const OutputColumn &column, const std::vector<Outputs> &red
   return result;
 }
 
+/// How far apart the values are that a length counted by nodes can have; 0 of others.
+double step_of(const OutputColumn &column, const std::vector<Outputs> &truth) {
+  double step = 0;
+  for (const Outputs &row : truth)
+    if (column.kind == OutputKind::measure && row.contact_nodes.value_or(0) > 0)
+      step = std::max(step, row.contact_measure.value_or(0) / *row.contact_nodes);
+  return column.value == &Outputs::contact_measure ? step : step / 2;
+}
+
+/// Pressures that are off by more than round-off move nodes in and out of contact or stick: where
+/// none of the answers shows it, another one may be off by a step.
+void count_steps(const std::vector<Outputs> &truth, std::vector<OutputError> &errors) {
+  constexpr double round_off = 1e-8;
+  const auto quantity_off = [](const OutputError &error) {
+    return output_column(error.name).kind == OutputKind::quantity && error.max_of_value > round_off;
+  };
+  if (std::ranges::none_of(errors, quantity_off)) return;
+  for (OutputError &error : errors) {
+    const double step = step_of(output_column(error.name), truth);
+    if (step == 0 || error.max_of_value > round_off) continue;
+    const double size = magnitude(output_column(error.name), truth);
+    error.max = step;
+    error.max_of_range = error.max_of_value = size > 0 ? step / size : step;
+  }
+}
+
 bool has(const std::vector<Outputs> &rows, const OutputColumn &column) {
   return std::ranges::any_of(rows, [&](const Outputs &row) { return column.of(row).has_value(); });
 }
@@ -92,6 +118,7 @@ std::vector<OutputError> output_errors(const std::vector<Outputs> &reduced,
     if (column.value != &Outputs::seconds && column.value != &Outputs::iterations &&
         has(reduced, column) && has(truth, column))
       errors.push_back(error_of(column, reduced, truth));
+  count_steps(truth, errors);
   return errors;
 }
 

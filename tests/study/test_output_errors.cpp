@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace rbvi::output_errors_test {
 namespace {
 
@@ -35,6 +37,27 @@ TEST(OutputErrors, AreNeverRelativeToANumberNearZero) {
   const std::vector<OutputError> zero =
       output_errors({with_energy(0), with_energy(0)}, {with_energy(0), with_energy(0)});
   EXPECT_EQ(zero[0].max_of_range, 0);
+}
+
+/// 4 nodes on a length of 0.2, of which 2 stick on 0.1.
+TEST(OutputErrors, OfLengthsThatAreCountedAreAStepWherePressuresAreOff) {
+  const auto answer = [](double force) {
+    Outputs outputs;
+    outputs.normal_force = force;
+    outputs.contact_nodes = 4;
+    outputs.contact_measure = 0.2;
+    outputs.stick_half_width = 0.05;
+    return outputs;
+  };
+  const auto error_of = [&](double force, const std::string &name) {
+    const std::vector<OutputError> errors = output_errors({answer(force)}, {answer(1)});
+    return std::ranges::find(errors, name, &OutputError::name)->max;
+  };
+  EXPECT_EQ(error_of(1 + 1e-12, "contact_measure"), 0);
+  EXPECT_EQ(error_of(1 + 1e-12, "stick_half_width"), 0);
+  EXPECT_NEAR(error_of(1 + 1e-4, "contact_measure"), 0.05, 1e-15);
+  EXPECT_NEAR(error_of(1 + 1e-4, "stick_half_width"), 0.025, 1e-15);
+  EXPECT_NEAR(error_of(1 + 1e-4, "normal_force"), 1e-4, 1e-12);
 }
 
 TEST(OutputErrors, LeaveOutQueriesWithoutAnAnswer) {
