@@ -1,6 +1,7 @@
 #include "rbvi/core/mirror.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rbvi {
 
@@ -28,6 +29,21 @@ Vector image_counts(const MirrorPlanes &planes, const std::vector<Point> &points
 bool cancels(const MirrorPlanes &planes, std::size_t component) {
   return std::ranges::find(planes, static_cast<int>(component), &MirrorPlane::component) !=
          planes.end();
+}
+
+bool has_image(const MirrorPlanes &planes, int image, const OutputFields &begin,
+               const OutputFields &end) {
+  constexpr double round_off = 1e-7;
+  const double length =
+      std::hypot(end[field::x] - begin[field::x], end[field::y] - begin[field::y]);
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    const auto &[component, position] = planes[k];
+    const std::size_t place = component == 0 ? field::x : field::y;
+    if (((image >> k) & 1) != 0 && std::abs(begin[place] - position) < round_off * length &&
+        std::abs(end[place] - position) < round_off * length)
+      return false;
+  }
+  return true;
 }
 
 void reflect(const MirrorPlanes &planes, int image, OutputFields &fields) {

@@ -155,6 +155,23 @@ TEST(Mirror, OutputsAreOfTheWholeBodyByNitschesMethodWithFriction) {
   expect_of_whole({"nitsche", ", friction: {tresca: 0.05}", true, false}, 1e-3);
 }
 
+/// It is its own image.
+TEST(Mirror, ThePlaneItselfCountsOnce) {
+  const TemporaryFile file(block(true));
+  const std::string text =
+      "rbvi: 1\nphysics: plane_strain\nmesh: {file: " + file.name() + ", degree: 1}\n" +
+      "parameters: {d: {range: [0.01, 0.1], default: 0.05}}\n"
+      "materials: {rubber: {at: all, E: 15, nu: 0.3}}\n"
+      "imposed:\n  top: {at: top, uy: -d}\n  axis: {at: axis, ux: 0}\nmirror: {x: 0}\n"
+      "contact: {foot: {at: foot, against: {plane: {normal: [0, -1], position: 0}}}}\n"
+      "outputs: {along: {integral: y, at: axis}, across: {measure: y > 0.9, at: [axis, top]}}\n";
+  Problem problem(PETSC_COMM_WORLD, make_scene(read_case(text, "half.yaml"), {}), {});
+  const std::vector<NamedOutput> found = HighFidelity(problem, {}).solve({0.05}).outputs.named;
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_NEAR(found[0].value, 0.5, 1e-12);
+  EXPECT_NEAR(found[1].value, 1.1, 1e-9);
+}
+
 /// What crosses the plane is none of the whole body; a plane that is none of the mesh is refused.
 TEST(Mirror, WhatDoesNotFitThePlaneIsRefused) {
   const TemporaryFile file(block(true));

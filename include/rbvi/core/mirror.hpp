@@ -24,6 +24,10 @@ int image_count(const MirrorPlanes &planes);
 Vector image_counts(const MirrorPlanes &planes, const std::vector<Point> &points);
 /// Whether the sum of a vector and its images has no such component.
 bool cancels(const MirrorPlanes &planes, std::size_t component);
+/// Whether the image of this number of a line, with the fields at its ends, is another line than
+/// those of lower numbers: not where it lies on a plane.
+bool has_image(const MirrorPlanes &planes, int image, const OutputFields &begin,
+               const OutputFields &end);
 /// Fields at a point become those at its image of this number, 0: itself.
 void reflect(const MirrorPlanes &planes, int image, OutputFields &fields);
 

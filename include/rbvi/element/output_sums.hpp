@@ -34,15 +34,20 @@ public:
   /// pressure and no gap, what depends on the gap has no value and is left out.
   template <class Fields, class Seen, class Weight>
   void add(std::size_t lines, const Fields &fields, const Seen &seen, const Weight &weight) {
+    if (mirrors_.empty()) return add_image(lines, fields, seen, weight);
     for (int image = 0; image < image_count(mirrors_); ++image) {
-      const auto reflected = [&, image](const auto &of) {
-        return [&, image](std::size_t line, double s) {
-          OutputFields at = of(line, s);
+      std::vector<std::size_t> own;
+      for (std::size_t line = 0; line < lines; ++line)
+        if (has_image(mirrors_, image, fields(line, 0), fields(line, 1))) own.push_back(line);
+      const auto reflected = [&](const auto &of) {
+        return [&](std::size_t line, double s) {
+          OutputFields at = of(own[line], s);
           reflect(mirrors_, image, at);
           return at;
         };
       };
-      add_image(lines, reflected(fields), reflected(seen), weight);
+      add_image(own.size(), reflected(fields), reflected(seen),
+                [&](std::size_t line, const OutputFields &at) { return weight(own[line], at); });
     }
   }
 
