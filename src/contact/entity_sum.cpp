@@ -335,6 +335,27 @@ void EntitySum::assemble_nodal(const FullMu &mu, const ContactState &state, cons
   if (follows_state()) operators.state = state;
 }
 
+Vector EntitySum::nodal_forces(const FullMu &mu, const ContactState &state,
+                               const Vector &lambda) const {
+  Vector forces = Vector::Zero(mesh_.nodes() * mesh_.components);
+  EntityValues values = shape();
+  std::vector<double> displacement;
+  visit_entities(mu, mapped_vertices(mu, {}), {}, [&](Index e, Cell &cell) {
+    Vector own = Vector::Zero(rows());
+    const std::span<const int> dual = rows_of(e);
+    for (std::size_t i = 0; i < dual.size(); ++i)
+      if (dual[i] >= 0) own[static_cast<Index>(i)] = lambda[dual[i]];
+    if (own.isZero(0)) return;
+    if (follows_state()) set_displacement(mu, e, state, cell, displacement);
+    integrate(mu, cell, values);
+    const Vector of_nodes = values.b.transpose() * own;
+    for (Index k = 0; k < of_nodes.size(); ++k)
+      forces[mesh_.nodes_of(e)[k / mesh_.components] * mesh_.components + k % mesh_.components] +=
+          of_nodes[k];
+  });
+  return forces;
+}
+
 void EntitySum::add_weights(const FullMu &mu, Index entity, const Cell &cell, EntityValues &values,
                             Vector &weights) const {
   weigh(mu, cell, values);

@@ -32,6 +32,10 @@ Curvature ContactInterface::curvature(const FullMu &, const ContactState &, cons
   throw failure("this kind of contact has no curvature");
 }
 
+Vector ContactInterface::nodal_forces(const FullMu &, const ContactState &, const Vector &) const {
+  throw failure("this kind of contact has no multipliers");
+}
+
 SparseMatrix ContactInterface::averages() const {
   throw failure("scene " + scene_.name + ": this contact is not one of nodes");
 }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <optional>
 
 namespace rbvi {
@@ -41,6 +42,8 @@ public:
     return friction_bound(pair_.friction, mu);
   }
   std::vector<Index> partly_fixed() const override;
+  Vector nodal_forces(const FullMu &mu, const ContactState &state,
+                      const Vector &lambda) const override;
   void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                double least, Outputs &outputs) const override;
   double gap_error(const FullMu &mu, const Vector &u, const Vector &lambda) const override;
@@ -265,6 +268,15 @@ double PairInterface::gap_error(const FullMu &mu, const Vector &u, const Vector 
     errors.add(multipliers_.sum(lambda, p.slave_edge, p.s), way, p.gap + way, found->second);
   }
   return errors.largest();
+}
+
+Vector PairInterface::nodal_forces(const FullMu &mu, const ContactState &state,
+                                   const Vector &lambda) const {
+  std::vector<int> all(2 * mesh_.points.size());
+  std::iota(all.begin(), all.end(), 0);
+  const PairOperators operators =
+      pair_operators(partners(mu, state), multipliers_, all, std::ssize(all), friction());
+  return operators.b.transpose() * lambda;
 }
 
 /// Of each piece of the slave curve, then whether all of the master curve are.

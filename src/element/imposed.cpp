@@ -157,6 +157,36 @@ Form work_of_load(const Scene &scene, Term f, Part part) {
   });
 }
 
+/// -f(v) of a displacement v(mu, x), theta of the term of f in the kernel.
+Form work_along(const Scene &scene, Term f, Named<PointMap> v) {
+  const FormDofs dofs = dofs_of(scene, f.form);
+  return {f.form.region,
+          [f, v, dofs](const FullMu &mu, const Cell &cell, double *value) {
+            CellVector load(dofs.count());
+            f.form.kernel(mu, cell_of(f, cell), load.data());
+            const std::vector<Point> nodes = node_points(dofs.dim, dofs.degree, cell);
+            *value = 0;
+            for (std::size_t i = 0; i < nodes.size(); ++i) {
+              const Point at = v(mu, nodes[i]);
+              for (std::size_t c = 0; c < static_cast<std::size_t>(dofs.components); ++c)
+                *value -= load[static_cast<Index>(i) * dofs.components + static_cast<Index>(c)] *
+                          product_of(f.theta, mu) * at[c];
+            }
+          },
+          f.form.boundary};
+}
+
+/// -f(e_c) of a term of f without its theta; of means the sum of the directions of the form.
+Form work_along_axis(const Scene &scene, const Term &f, std::size_t c) {
+  Point axis{};
+  axis[c] = 1;
+  if (f.form.kernel) return work_along(scene, f, everywhere(axis));
+  Form form = f.form;
+  for (Mean &mean : form.means)
+    mean.direction = -mean.direction[c] * axis;
+  return form;
+}
+
 /// The term without its theta.
 Term without_theta(Term term) {
   term.theta = std::vector<Factor>{};
@@ -230,7 +260,40 @@ Scene with_imposed_loads(Scene scene) {
   return scene;
 }
 
-Sum imposed_energy(const Scene &scene) {
+namespace {
+
+/// Whether a motion is the same at all points: a function that everywhere() makes.
+bool is_translation(const Named<PointMap> &motion) {
+  return motion.record.name == everywhere(Point{}).record.name ||
+         motion.record.name == everywhere(std::vector{constant(0)}).record.name;
+}
+
+/// Component c of a translation.
+Factor component_of(const Scene &scene, std::size_t c) {
+  Factor factor{"component " + std::to_string(c) + " of the motion",
+                [motion = scene.motion, c](const FullMu &mu) { return motion(mu, {})[c]; },
+                {}};
+  for (int p = 0; p < std::ssize(scene.parameters.all); ++p)
+    factor.parameters.push_back(p);
+  return factor;
+}
+
+/// Of -f(motion), one term of f.
+void add_work_of_motion(const Scene &scene, const Term &f, Sum &energy) {
+  if (!f.theta || !is_translation(scene.motion)) {
+    if (!f.form.means.empty())
+      throw bad_input("a force on a whole boundary, beside a motion that depends on the place: "
+                      "impose displacements instead, and leave out 'motion:'");
+    if (f.form.kernel) energy.push_back(mapped_term(work_along(scene, f, scene.motion)));
+    return;
+  }
+  for (std::size_t c = 0; c < static_cast<std::size_t>(scene.components); ++c)
+    energy.push_back(exact_term(work_along_axis(scene, without_theta(f), c),
+                                together(*f.theta, {component_of(scene, c)})));
+}
+
+/// a(l, l) / 2 - f(l).
+Sum energy_of_values(const Scene &scene) {
   Sum energy;
   if (!imposes_values(scene)) return energy;
   const bool exact = !has_mapped_values(scene);
@@ -258,6 +321,17 @@ Sum imposed_energy(const Scene &scene) {
     else
       energy.push_back(mapped_with(scene, f, work_of_load(scene, f, sum_part(scene, true))));
   }
+  for (Term &term : energy)
+    term.of_imposed = true;
+  return energy;
+}
+
+} // namespace
+
+Sum imposed_energy(const Scene &scene) {
+  Sum energy = energy_of_values(scene);
+  for (const Term &f : scene.f)
+    if (scene.motion && !f.of_imposed) add_work_of_motion(scene, f, energy);
   return energy;
 }
 

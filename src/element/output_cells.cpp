@@ -208,6 +208,7 @@ double reaction(const OutputState &state, const OutputForm &form,
                 std::span<const OutputPart> parts) {
   double force = 0;
   for (const OutputPart &part : parts) {
+    if (contact_of_part(part) >= 0) continue;
     const auto [row, given] = tested(state.scene, state.mu, state.cells, part, form.vector);
     double sum = given;
     for (const auto &[dof, entry] : row)
@@ -284,6 +285,7 @@ std::optional<SeparatedReaction> separated_reaction(const Scene &scene, int outp
   const std::span<const OutputPart> parts = parts_of(cells, output);
   SeparatedReaction result;
   for (const OutputPart &part : parts) {
+    if (contact_of_part(part) >= 0) continue;
     if (!term_of(scene, part.term).theta) return std::nullopt;
     if (std::ranges::find(result.terms, part.term) == result.terms.end())
       result.terms.push_back(part.term);
@@ -291,6 +293,7 @@ std::optional<SeparatedReaction> separated_reaction(const Scene &scene, int outp
   result.rows = Matrix::Zero(std::ssize(result.terms), cells.points.rows() * scene.components);
   result.given = Vector::Zero(result.rows.rows());
   for (const OutputPart &part : parts) {
+    if (contact_of_part(part) >= 0) continue;
     const Index q = std::ranges::find(result.terms, part.term) - result.terms.begin();
     const Tested of_part = tested(scene, {}, cells, part, form.vector);
     result.given[q] += of_part.given;

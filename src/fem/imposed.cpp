@@ -89,9 +89,14 @@ ImposedEnergy make_imposed_energy(const Scene &scene, const Mesh &mesh, const Do
   energy.split = split_sum(energy.sum, scene.parameters);
   for (const ExactGroup &group : energy.split.exact) {
     std::vector<WeightedForm> forms;
-    for (const auto &[term, weight] : group.members)
-      forms.push_back({&energy.sum[term].form, weight});
-    energy.exact.push_back(integral(forms, {}, mesh, dofs, {}));
+    double of_means = 0;
+    for (const auto &[term, weight] : group.members) {
+      const Form &form = energy.sum[term].form;
+      if (form.kernel) forms.push_back({&form, weight});
+      for (const Mean &mean : form.means)
+        of_means += weight * (mean.direction[0] + mean.direction[1] + mean.direction[2]);
+    }
+    energy.exact.push_back(of_means + integral(forms, {}, mesh, dofs, {}));
   }
   return energy;
 }

@@ -8,7 +8,9 @@
 #include "rbvi/par/gather.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <optional>
 
 namespace rbvi {
 
@@ -99,59 +101,161 @@ private:
     return body_numbers(cells, static_cast<int>(corners), std::ssize(numbers), 0).maxCoeff() == 1;
   }
 
-  /// A bit for each node of a cell that is on a boundary.
-  int held_of(const OutputForm &form, std::size_t cell) const {
+  /// A bit for each of these nodes that a cell has.
+  int held_of(const std::vector<bool> &held, std::size_t cell) const {
     const auto nodes = nodes_of(mesh_, cell);
-    int held = 0;
+    int bits = 0;
     for (std::size_t i = 0; i < nodes.size() && nodes[i] >= 0; ++i)
-      for (const std::string &boundary : form.at)
-        if (mesh_.boundary.at(boundary)[static_cast<std::size_t>(nodes[i])]) held |= 1 << i;
-    return held;
+      if (held[static_cast<std::size_t>(nodes[i])]) bits |= 1 << i;
+    return bits;
   }
 
-  void add_term(const OutputForm &form, const Form &of, int term) {
+  template <class Add> void visit_facets(const std::string &boundary, const Add &add_held) const {
+    for (const auto &[cell, facet] : mesh_.facets.at(boundary))
+      add_held(cell, facet);
+  }
+
+  void add_term(const std::vector<bool> &held, const Form &of, int term) {
     if (!of.kernel) return;
     const auto add_held = [&](std::size_t cell, int facet) {
-      if (const int held = held_of(form, cell); held != 0)
-        add({.cell = static_cast<int>(cell), .facet = facet, .term = term, .held = held});
+      if (const int bits = held_of(held, cell); bits != 0)
+        add({.cell = static_cast<int>(cell), .facet = facet, .term = term, .held = bits});
     };
     if (!of.boundary.empty())
-      for (const auto &[cell, facet] : mesh_.facets.at(of.boundary))
-        add_held(cell, facet);
+      visit_facets(of.boundary, add_held);
     else
       for (std::size_t cell = 0; cell < mesh_.cells.size(); ++cell)
         if (is_in({of.region}, cell)) add_held(cell, -1);
   }
 
-  void add_reaction(const OutputForm &form) {
-    check_reaction(form);
-    const auto a_terms = static_cast<int>(scene_.a.size());
-    for (int q = 0; q < a_terms; ++q)
-      add_term(form, scene_.a[q].form, q);
-    for (int q = 0; q < std::ssize(scene_.f); ++q)
-      if (!scene_.f[q].of_imposed) add_term(form, scene_.f[q].form, a_terms + q);
+  /// What contact number i pushes these nodes with.
+  void add_contact(const std::vector<bool> &held, int i) {
+    const InterfaceEntities &entities = scene_.contacts[i].entities;
+    const auto add_held = [&](std::size_t cell) {
+      if (const int bits = held_of(held, cell); bits != 0)
+        add({.cell = static_cast<int>(cell), .term = ~i, .held = bits});
+    };
+    if (entities.kind == InterfaceEntities::Kind::cells)
+      for (std::size_t cell = 0; cell < mesh_.cells.size(); ++cell) {
+        if (is_in({entities.parts.front()}, cell)) add_held(cell);
+      }
+    else
+      for (const std::string &boundary : entities.parts)
+        visit_facets(boundary, [&](std::size_t cell, int) { add_held(cell); });
   }
 
-  void check_reaction(const OutputForm &form) const {
-    std::vector<std::string> forces; // boundaries with forces of another kind
+  void add_reaction(const OutputForm &form) {
+    std::vector<bool> held(mesh_.points.size(), false);
+    for (const std::string &boundary : form.at)
+      for (std::size_t node = 0; node < held.size(); ++node)
+        if (mesh_.boundary.at(boundary)[node]) held[node] = true;
+    check_reaction(form, held);
+    const std::optional<std::vector<bool>> whole = bodies_held_by(form, held);
+    const auto a_terms = static_cast<int>(scene_.a.size());
+    for (int q = 0; q < a_terms && !whole; ++q)
+      add_term(held, scene_.a[q].form, q);
+    if (whole) held = *whole;
+    for (int q = 0; q < std::ssize(scene_.f); ++q)
+      if (!scene_.f[q].of_imposed && !(whole && scene_.f[q].form.boundary.empty()))
+        add_term(held, scene_.f[q].form, a_terms + q);
+    for (int i = 0; i < std::ssize(scene_.contacts); ++i)
+      if (scene_.contacts[i].formulation == Formulation::mixed) add_contact(held, i);
+  }
+
+  /// Whether a load on cells may do work on a translation. Those of free strains do none.
+  bool works_along(const Term &load, const Point &direction) const {
+    if (!load.form.kernel) return false;
+    if (!load.theta) return true;
+    const auto components = static_cast<std::size_t>(dofs_.components);
+    std::vector<double> values(components *
+                               static_cast<std::size_t>(nodes_per_cell(mesh_.dim, mesh_.degree)));
+    for (std::size_t cell = 0; cell < mesh_.cells.size(); ++cell) {
+      if (!is_in({load.form.region}, cell)) continue;
+      load.form.kernel({}, cell_of(mesh_, cell), values.data());
+      double work = 0, terms = 0;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        work += direction[i % components] * values[i];
+        terms += std::abs(direction[i % components] * values[i]);
+      }
+      if (std::abs(work) > 1e-12 * terms) return true;
+    }
+    return false;
+  }
+
+  bool moves(std::size_t node, int c) const {
+    return dofs_.free[node * static_cast<std::size_t>(dofs_.components) +
+                      static_cast<std::size_t>(c)] >= 0;
+  }
+
+  /// Boundaries that are pushed along the direction by what no part of the reaction has: means, and
+  /// contact by Nitsche's method.
+  std::vector<std::string> pushed_otherwise(const OutputForm &form) const {
+    std::vector<std::string> boundaries;
     for (const ContactRecipe &contact : scene_.contacts)
-      if (contact.entities.kind != InterfaceEntities::Kind::cells)
-        forces.insert(forces.end(), contact.entities.parts.begin(), contact.entities.parts.end());
+      if (contact.formulation != Formulation::mixed)
+        boundaries.insert(boundaries.end(), contact.entities.parts.begin(),
+                          contact.entities.parts.end());
     for (const Sum *sum : {&scene_.a, &scene_.f})
       for (const Term &term : *sum)
         for (const Mean &mean : term.form.means)
-          forces.push_back(mean.boundary);
+          if (dot(mean.direction, form.vector) != 0) boundaries.push_back(mean.boundary);
+    return boundaries;
+  }
+
+  /// The nodes of the bodies that the boundaries of a reaction alone hold along it, where forces on
+  /// them balance: then the reaction is all others on these bodies, whose stresses do not enter.
+  /// None where something else holds or pushes them, or loads are on their cells, all of which a
+  /// model would have to keep.
+  /// Collective.
+  std::optional<std::vector<bool>> bodies_held_by(const OutputForm &form,
+                                                  const std::vector<bool> &held) const {
+    if (dofs_.components == 1 || (scene_.axisymmetric && form.vector[0] != 0)) return std::nullopt;
+    std::vector<std::vector<int>> bodies(held.size());
+    std::vector<PetscInt> of_reaction(static_cast<std::size_t>(mesh_.bodies), 0), not_alone{0};
+    for (std::size_t k = 0; k < mesh_.cells.size(); ++k)
+      for (const int node : nodes_of(mesh_, k))
+        if (node >= 0) bodies[static_cast<std::size_t>(node)].push_back(mesh_.body[k]);
+    const auto visit = [&](const std::vector<bool> &nodes, const auto &at) {
+      for (std::size_t node = 0; node < nodes.size(); ++node)
+        if (nodes[node])
+          for (const int body : bodies[node])
+            at(node, static_cast<std::size_t>(body));
+    };
+    visit(held, [&](std::size_t, std::size_t body) { of_reaction[body] = 1; });
+    over_ranks(mesh_.comm, MPI_MAX, of_reaction);
+    visit(std::vector<bool>(held.size(), true), [&](std::size_t node, std::size_t body) {
+      for (int c = 0; c < dofs_.components; ++c)
+        if (of_reaction[body] != 0 && form.vector[c] != 0 && !moves(node, c) && !held[node])
+          not_alone[0] = 1;
+    });
+    for (const std::string &boundary : pushed_otherwise(form))
+      visit(mesh_.boundary.at(boundary), [&](std::size_t, std::size_t body) {
+        if (of_reaction[body] != 0) not_alone[0] = 1;
+      });
+    for (const Term &a : scene_.a)
+      if (!a.form.boundary.empty()) not_alone[0] = 1;
+    for (const Term &load : scene_.f)
+      if (!load.of_imposed && load.form.boundary.empty() && works_along(load, form.vector))
+        not_alone[0] = 1;
+    over_ranks(mesh_.comm, MPI_MAX, not_alone);
+    if (not_alone[0] != 0) return std::nullopt;
+    std::vector<bool> whole(held.size(), false);
+    visit(std::vector<bool>(held.size(), true), [&](std::size_t node, std::size_t body) {
+      if (of_reaction[body] != 0) whole[node] = true;
+    });
+    return whole;
+  }
+
+  void check_reaction(const OutputForm &form, const std::vector<bool> &held) const {
+    const std::vector<std::string> forces = pushed_otherwise(form);
     std::vector<int> shared(forces.size()), loose{0};
-    for (const std::string &boundary : form.at)
-      for (std::size_t node = 0; node < mesh_.points.size(); ++node) {
-        if (!mesh_.boundary.at(boundary)[node]) continue;
-        for (int c = 0; c < dofs_.components; ++c)
-          if (form.vector[c] != 0 && dofs_.free[node * static_cast<std::size_t>(dofs_.components) +
-                                                static_cast<std::size_t>(c)] >= 0)
-            loose[0] = 1;
-        for (std::size_t i = 0; i < forces.size(); ++i)
-          if (mesh_.boundary.at(forces[i])[node]) shared[i] = 1;
-      }
+    for (std::size_t node = 0; node < held.size(); ++node) {
+      if (!held[node]) continue;
+      for (int c = 0; c < dofs_.components; ++c)
+        if (form.vector[c] != 0 && moves(node, c)) loose[0] = 1;
+      for (std::size_t i = 0; i < forces.size(); ++i)
+        if (mesh_.boundary.at(forces[i])[node]) shared[i] = 1;
+    }
     over_ranks(mesh_.comm, MPI_MAX, shared);
     over_ranks(mesh_.comm, MPI_MAX, loose);
     const std::string where = "the reaction '" + form.name + "' is of " + joined(form.at);

@@ -1,7 +1,6 @@
 #include "rbvi/fem/problem.hpp"
 
 #include "rbvi/contact/history.hpp"
-#include "rbvi/contact/named_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
@@ -46,6 +45,14 @@ Dofs numbered_dofs(const Scene &scene, const Mesh &mesh) {
   return dofs;
 }
 
+/// The free bodies, with their springs in the scene and the loads of the imposed values behind
+/// those of nothing on them, as whoever reads the scene from a file makes them.
+std::vector<FreeBody> put_springs(Scene &scene, const Mesh &mesh, Dofs &dofs) {
+  std::vector<FreeBody> bodies = add_springs(scene, mesh, dofs);
+  if (!bodies.empty()) scene = with_imposed_loads(std::move(scene));
+  return bodies;
+}
+
 Scene checked(Scene scene) {
   check_functions(scene);
   check_outputs(scene);
@@ -65,14 +72,16 @@ Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options, Index c
     : given_(checked(std::move(scene))), mesh_options_(options),
       scene_(std::make_unique<Scene>(with_imposed_loads(given_))),
       mesh_(make_mesh(comm, *scene_, options)), dofs_(numbered_dofs(*scene_, mesh_)),
-      free_(add_springs(*scene_, mesh_, dofs_)), places_(place_interfaces(mesh_, dofs_, *scene_)),
+      free_(put_springs(*scene_, mesh_, dofs_)), places_(place_interfaces(mesh_, dofs_, *scene_)),
       contact_(make_contact(*scene_, std::exchange(places_.meshes, {}))),
-      output_cells_(cells_of_outputs(*scene_, mesh_, dofs_)), contact_gather_(contact_gather),
+      output_cells_(cells_of_outputs(*scene_, mesh_, dofs_)),
+      contact_shares_(rbvi::contact_shares(*scene_, output_cells_, places_.natural_nodes)),
+      contact_gather_(contact_gather),
       a_(make_summed<Mat>(scene_->a, scene_->parameters, mesh_, dofs_)),
       f_(make_summed<Vec>(scene_->f, scene_->parameters, mesh_, dofs_)) {
   if (!free_.empty()) stiffen_springs();
-  if (!imposes_values(*scene_)) return;
-  check_imposed(*scene_, generic_point(scene_->parameters), mesh_, dofs_);
+  if (imposes_values(*scene_))
+    check_imposed(*scene_, generic_point(scene_->parameters), mesh_, dofs_);
   imposed_energy_ = make_imposed_energy(*scene_, mesh_, dofs_);
 }
 
@@ -191,7 +200,7 @@ const Operators &Problem::assemble(const Mu &mu, ContactRows rows, const Vector 
   operators_.a = a_.total.get();
   operators_.f = free_.empty() ? f_.total.get() : pressed_.get();
   if (!free_.empty()) relax_springs(beta_);
-  if (imposes_values(*scene_))
+  if (!imposed_energy_.sum.empty())
     operators_.imposed_energy = energy_at(imposed_energy_, *scene_, all, mesh_, dofs_, mapped_);
   return operators_;
 }
@@ -215,7 +224,8 @@ void add_named_outputs(const Problem &problem, const FullMu &mu, const Vector &u
     if (!at_cells) at_cells = at(problem.output_cells().nodes);
     return cell_output(problem.scene(), output, mu, problem.output_cells(), *at_cells);
   };
-  const OutputSources sources{[&](std::size_t i) { return at(problem.places().natural_nodes[i]); },
+  const OutputSources sources{problem.contact_shares(),
+                              [&](std::size_t i) { return at(problem.places().natural_nodes[i]); },
                               of_cells};
   add_named_outputs(problem.scene(), problem.contact(), mu, sources, lambda, outputs);
   add_gap_error(problem.scene(), problem.contact(), mu, sources.of_interface, lambda, outputs);

@@ -1,6 +1,5 @@
 #include "rbvi/model/online.hpp"
 
-#include "rbvi/contact/named_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/core/text.hpp"
@@ -59,6 +58,13 @@ QueryOptions with_method(QueryOptions options, const ReducedModel &model, const 
   return options;
 }
 
+std::vector<std::vector<int>> nodes_of(const ContactModel &contact) {
+  std::vector<std::vector<int>> nodes;
+  for (const InterfaceModel &interface : contact.interfaces)
+    nodes.push_back(interface.nodes);
+  return nodes;
+}
+
 } // namespace
 
 const std::vector<std::string> &online_method_names() {
@@ -80,7 +86,8 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, const QueryOptions &option
 OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOptions &given)
     : model_(model), scene_(with_imposed_loads(std::move(scene))),
       imposed_energy_(rbvi::imposed_energy(scene_)), contact_(contact_of(model, scene_)),
-      dual_basis_(model.contact.dual_basis.sparseView()), cell_outputs_(model.outputs, scene_) {
+      dual_basis_(model.contact.dual_basis.sparseView()), cell_outputs_(model.outputs, scene_),
+      contact_shares_(contact_shares(scene_, model.outputs.cells, nodes_of(model.contact))) {
   check_terms_of(model.body.a, scene_.a, scene_.parameters, "a");
   check_terms_of(model.body.f, scene_.f, scene_.parameters, "f");
   check_imposed_by(model, scene_);
@@ -162,7 +169,7 @@ void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vec
     return u;
   };
   add_named_outputs(scene_, contact_, solution.mu,
-                    {of_interface, cell_outputs_.at(solution.mu, solution.u),
+                    {contact_shares_, of_interface, cell_outputs_.at(solution.mu, solution.u),
                      solution.least_pressure * std::max(0.0, lambda.maxCoeff())},
                     lambda, outputs);
   if (faces_surfaces) add_gap_error(scene_, contact_, solution.mu, of_interface, lambda, outputs);

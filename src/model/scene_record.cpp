@@ -208,12 +208,14 @@ template <class Store, class Of> void list_scene(const Store &store, Of &scene) 
     part.texts("at", output.at);
     list_output(part, output);
   });
-  // Loads of imposed values are made again from these values and the kernels of a; reactions need
-  // the kernels, too.
+  // Loads of imposed values are made again from these values and the kernels of a; reactions and
+  // the work of loads on a motion need the kernels, too.
   const bool imposes = imposes_values(scene);
-  const bool kernels = imposes || std::ranges::any_of(scene.outputs, [](const OutputForm &output) {
-                         return output.kind == OutputForm::Kind::reaction;
-                       });
+  const bool work = scene.motion && !scene.f.empty();
+  const bool kernels =
+      imposes || work || std::ranges::any_of(scene.outputs, [](const OutputForm &output) {
+        return output.kind == OutputForm::Kind::reaction;
+      });
   const auto term = [&](const Store &part, auto &of) { list_term(part, of, kernels); };
   store.items("a", scene.a, term);
   store.items("f", scene.f, term);

@@ -292,7 +292,7 @@ AffineTerms separate_imposed_energy(const Problem &problem) {
   visit_domain(problem, sum, split.mapped, [&](const std::vector<int> &nodes, TouchedCell cell) {
     cell.imposed_by = imposed_by_at(problem.dofs(), nodes);
     cell.entries = {{0, 0}};
-    if (!cell.imposed_by.empty()) mine.push_back(std::move(cell));
+    if (!cell.imposed_by.empty() || !sum[cell.term].of_imposed) mine.push_back(std::move(cell));
   });
   const Mesh &mesh = problem.mesh();
   terms.samples = {to_sample_mesh(mesh.dim, mesh.dim + 1, gather_cells(problem.comm(), mine))};

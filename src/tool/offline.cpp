@@ -69,6 +69,25 @@ ReducedModel finished_model(Reduction &made, const OfflineOptions &options, cons
   return model;
 }
 
+/// Reads a model back and asks it what the self-check asked. Throws failure where its file cannot
+/// be read, or answers less than the model did.
+void check_written(const ReducedModel &model, const std::filesystem::path &file,
+                   const Registry *registry) {
+  if (registry == nullptr) return; // who knows its functions
+  const SelfCheck &asked = model.made.self_check;
+  std::string reason;
+  try {
+    const ReducedModel read = read_model(file, *registry, false);
+    if (asked.queries == 0) return;
+    const SelfCheck again = self_check(read, read.scene, asked.queries - asked.at_boundary);
+    if (again.unanswered > asked.unanswered) reason = again.reason;
+  } catch (const Error &error) {
+    reason = error.what();
+  }
+  if (!reason.empty())
+    throw failure("the model in " + file.string() + " is not the one that was made: " + reason);
+}
+
 /// That nobody knows the errors of a new model; and where it has so few samples that it cannot even
 /// follow a linear function of the parameters.
 void tell_of_errors(const ReducedModel &model, const std::filesystem::path &run) {
@@ -152,6 +171,7 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const OfflineOption
     collectively(world, [&] {
       if (rank_of(world) != 0) return;
       write_model(model, options.out / "model.h5");
+      check_written(model, options.out / "model.h5", options.registry.get());
       write_sample_table(options.out / "samples.csv", options.scene.parameters, sweep.samples);
     });
   });

@@ -33,6 +33,8 @@ public:
   void assemble_nodal(const FullMu &mu, const ContactState &state, const Vector &lambda,
                       ContactOperators &operators) override;
   bool can_be_split() const override { return true; }
+  Vector nodal_forces(const FullMu &mu, const ContactState &state,
+                      const Vector &lambda) const override;
   const EntitySum *entity_sum() const override { return this; }
 
   int entity_dim() const { return entity_dim_; }

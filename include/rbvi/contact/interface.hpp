@@ -174,6 +174,11 @@ public:
   /// The gap that is left, no displacement counts, at every node that cannot move and has no
   /// multiplier, and the size of what it is a difference of.
   virtual std::vector<std::array<double, 2>> held_gaps(const FullMu & /*mu*/) const { return {}; }
+  /// B^T lambda at all nodes of the mesh, node * components + c, those that are held included.
+  /// Throws failure by Nitsche's method.
+  virtual Vector nodal_forces(const FullMu &mu, const ContactState &state,
+                              const Vector &lambda) const;
+
   /// Fills the outputs of contact of the domain, with the numbers of nodes of the whole body:
   /// contact_outputs makes the others the whole's. `operators`: at least those of assemble_nodal,
   /// with the state; `lambda`: a node with at most `least` counts as free.

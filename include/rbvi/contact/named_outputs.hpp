@@ -9,13 +9,23 @@
 #include "rbvi/contact/contact.hpp"
 #include "rbvi/element/output_cells.hpp"
 
+#include <map>
+
 namespace rbvi {
 
 /// Throws bad_input for an output over a contact that the scene does not have.
 void check_outputs(const Scene &scene);
 
+/// The nodes of each interface whose contact forces belong to a reaction, by its output.
+using ContactShares = std::map<int, std::vector<std::vector<Index>>>;
+
+/// `nodes`: numbers of those of each interface in the whole mesh.
+ContactShares contact_shares(const Scene &scene, const OutputCells &cells,
+                             const std::vector<std::vector<int>> &nodes);
+
 /// What named outputs are taken from.
 struct OutputSources {
+  const ContactShares &shares;
   /// Displacements at the nodes of interface number i, without the motion, with the values that
   /// boundaries impose, node * components + c.
   std::function<Vector(std::size_t i)> of_interface;

@@ -4,8 +4,8 @@
 //   u = motion + l + w,   a(w, v) + b(v, lambda) = f(v) - a(l, v),   b(w, eta) <= g(eta) - b(l,
 //   eta)
 //
-// and the energy of l + w is that of w under this load, and a(l, l) / 2 - f(l). Loads and energy
-// are sums of forms like those of a scene: exact where a and the imposed values are, else separated
+// and the energy of u is that of w under this load, and a(l, l) / 2 - f(l) - f(motion). Loads and
+// energy are sums of forms like those of a scene: exact where a and the imposed values are, else separated
 // by empirical interpolation. Their kernels read Cell::imposed_by.
 #pragma once
 
@@ -22,8 +22,10 @@ bool imposes_values(const Scene &scene);
 /// a factor that is not finite at the fixed parameters.
 Scene with_imposed_loads(Scene scene);
 
-/// a(l, l) / 2 - f(l): each kernel fills a single number, which the cells add up. `scene`: as
-/// with_imposed_loads returns it.
+/// a(l, l) / 2 - f(l) - f(motion): each kernel fills a single number, which the cells add up; of a
+/// form of means it is the sum of their directions. Terms of l are `of_imposed`: of cells without
+/// imposed values they are zero. `scene`: as with_imposed_loads returns it. Throws bad_input for
+/// means beside a motion that depends on the place.
 Sum imposed_energy(const Scene &scene);
 
 /// What fixed boundary number `boundary` imposes at a point of the reference domain. Throws

@@ -15,8 +15,8 @@ struct OutputCells {
     int output = 0; ///< number in Scene::outputs
     int cell = 0;
     int facet = -1; ///< -1: the whole cell
-    int term = 0;   ///< of a reaction: in a, then in f; of a spring: its mean
-    int held = 0;   ///< of a reaction: a bit for each node of the cell on its boundary
+    int term = 0;   ///< of a reaction: in a, then in f, or ~contact; of a spring: its mean
+    int held = 0;   ///< of a reaction: a bit for each node of the cell that it is the force on
   };
   Matrix points;               ///< nodes x dim, reference coordinates
   std::vector<int> nodes;      ///< their numbers in the whole mesh
@@ -25,6 +25,11 @@ struct OutputCells {
   std::vector<int> imposed_by; ///< Cell::imposed_by of each dof; empty: nothing is imposed
   std::vector<Part> parts;     ///< by output
 };
+
+/// The contact that a part of a reaction has the forces of; -1: it is of a or f.
+inline int contact_of_part(const OutputCells::Part &part) {
+  return part.term < 0 ? ~part.term : -1;
+}
 
 /// Whether an output needs cells.
 bool has_cells(const OutputForm &output);

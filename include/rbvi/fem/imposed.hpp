@@ -12,7 +12,7 @@ void check_imposed(const Scene &scene, const FullMu &mu, const Mesh &mesh, const
 /// l(mu) at all dofs in natural order, on every rank. Collective.
 Vector natural_imposed(const Scene &scene, const FullMu &mu, const Mesh &mesh, const Dofs &dofs);
 
-/// a(l, l) / 2 - f(l), its exact terms integrated once.
+/// a(l, l) / 2 - f(l) - f(motion), its exact terms integrated once.
 struct ImposedEnergy {
   Sum sum;
   SplitSum split;

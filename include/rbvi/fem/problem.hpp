@@ -13,6 +13,7 @@
 // |lambda_tau| <= bound, lambda_tau = bound slip / |slip| where it slips (corrected (3.32)).
 #pragma once
 
+#include "rbvi/contact/named_outputs.hpp"
 #include "rbvi/fem/distributed_contact.hpp"
 #include "rbvi/fem/free_motions.hpp"
 #include "rbvi/fem/imposed.hpp"
@@ -75,6 +76,7 @@ public:
   const Contact &contact() const { return contact_; }
   const Trace &trace() const { return places_.trace; }
   const OutputCells &output_cells() const { return output_cells_; }
+  const ContactShares &contact_shares() const { return contact_shares_; }
   Index dual_size() const { return contact_.dual_size(); }
 
   /// Collective. `mu`: the free parameters, inside or outside the box. A and F are assembled again
@@ -126,6 +128,7 @@ private:
   InterfacePlaces places_;
   Contact contact_;
   OutputCells output_cells_;
+  ContactShares contact_shares_; ///< of reactions
   Index contact_gather_;
   std::optional<DualLayout> dual_layout_;
   MappedVertices mapped_;

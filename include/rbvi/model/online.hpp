@@ -3,6 +3,7 @@
 // (model/law_solver.hpp), Nitsche's method (model/nitsche_solver.hpp).
 #pragma once
 
+#include "rbvi/contact/named_outputs.hpp"
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/model/cell_outputs.hpp"
 #include "rbvi/model/cone_solver.hpp"
@@ -63,6 +64,7 @@ private:
   std::optional<NodalTrace> trace_;         ///< else
   SparseMatrix dual_basis_;
   const CellOutputs cell_outputs_;
+  const ContactShares contact_shares_; ///< of reactions
 };
 
 } // namespace rbvi
