@@ -26,6 +26,17 @@ fs::path copy_of(const std::string &name) {
   return fs::path("sets") / (name + ".csv");
 }
 
+/// The file of that name in the nearest folder around another one: a project that was renamed since
+/// it was named. Where there is none, the path as it is.
+std::string in_a_folder_around(const fs::path &other, const fs::path &file) {
+  std::error_code ignored;
+  fs::path folder = fs::absolute(other).lexically_normal().parent_path();
+  for (; folder.has_relative_path(); folder = folder.parent_path())
+    if (fs::is_regular_file(folder / file.filename(), ignored))
+      return (folder / file.filename()).string();
+  return file.string();
+}
+
 /// Throws bad_input.
 std::string read_set_file(const std::string &name, const std::string &file) {
   std::ifstream in(file, std::ios::binary);
@@ -42,9 +53,11 @@ std::string beside_case(const std::string &name, const std::string &value,
                         const fs::path &case_file) {
   const bool is_file = name == "case" || is_of(OptionKind::file, name) ||
                        (is_of(OptionKind::set, name) && is_set_file(value));
-  if (!is_file || value.empty() || fs::path(value).is_absolute()) return value;
-  const fs::path beside = (case_file.parent_path() / value).lexically_normal();
   std::error_code ignored;
+  if (!is_file || value.empty()) return value;
+  if (fs::path(value).is_absolute())
+    return fs::exists(value, ignored) ? value : in_a_folder_around(case_file, value);
+  const fs::path beside = (case_file.parent_path() / value).lexically_normal();
   return fs::is_regular_file(beside, ignored) ? beside.string() : value;
 }
 

@@ -144,6 +144,17 @@ TEST_F(Kept, ARunDirectoryIsCompleteAndMayMove) {
   EXPECT_TRUE(contains(resumed, "all 8 were there")) << resumed;
 }
 
+/// The case, its mesh and its run in one folder.
+TEST_F(Kept, AProjectMayBeRenamed) {
+  fs::create_directories("mine");
+  fs::rename("coarse.msh", "mine/coarse.msh");
+  spill("mine/options.yaml", slurp("case.yaml"));
+  output_of(rbvi(2, "offline -case mine/options.yaml -out mine/run"));
+  fs::rename("mine", "ours");
+  EXPECT_FALSE(contains(output_of(rbvi(1, "verify -out ours/run")), "own values"));
+  EXPECT_TRUE(contains(output_of(rbvi(1, "offline -out ours/run")), "all 8 were there"));
+}
+
 /// Nothing is written for a set that is not there, the one of a later command included.
 TEST_F(Kept, MissingSetsAreBadInputFromTheBeginning) {
   expect_all_refused({{"offline -case case.yaml -train no.csv -out run", "no.csv"},

@@ -1,8 +1,9 @@
 // The directory of a run: its case file, the sets that this names, and what killed runs left.
 //
 // Names of files in a case file are looked for beside it first, then in the working directory. A
-// run's own case file has the sets as copies in its directory, and its mesh by an absolute path:
-// the directory may be moved, and the commands called from anywhere.
+// run's own case file has the sets as copies in its directory, and its mesh by an absolute path,
+// whose file is looked for in the folders around where it is gone: the directory may be moved, the
+// folder of the project renamed, and the commands called from anywhere.
 #pragma once
 
 #include "rbvi/io/parameter_sets.hpp"
@@ -10,7 +11,8 @@
 
 namespace rbvi {
 
-/// The value of option `name` in `case_file`, where it is one file beside that: with its folder.
+/// The value of option `name` in `case_file`, where it is one file beside that, or around it: with
+/// its folder.
 std::string beside_case(const std::string &name, const std::string &value,
                         const std::filesystem::path &case_file);
 
