@@ -7,13 +7,12 @@
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/par/collective.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <unistd.h>
 
@@ -71,8 +70,7 @@ public:
       check_name(name);
       options_ += " -setnumber " + quoted(name) + " " + shortest_number(value);
       const std::string print = "Printf(\"" + told + name + " %.17g\", " + name + ");\n";
-      const bool option = name.find('.') != std::string::npos; // of gmsh
-      lines += option ? print : "If (Exists(" + name + "))\n" + print + "EndIf\n";
+      lines += is_option(name) ? print : "If (Exists(" + name + "))\n" + print + "EndIf\n";
     }
     write_atomically(probe_.file, lines);
   }
@@ -95,7 +93,8 @@ public:
     for (const auto &[name, value] : numbers_) {
       const double own = printed(without, name), now = printed(log, name);
       const bool asked = without.find("Unknown variable '" + name + "'") != std::string::npos;
-      const std::string define = "write DefineConstant[" + name + " = ...]; there";
+      const std::string define =
+          is_option(name) ? "take that out" : "write DefineConstant[" + name + " = ...]; there";
       if (std::isnan(own) && !asked)
         throw bad_input("mesh: set gives " + name + ", a number that '" + file_ +
                         "' does not have: correct the name, or " + define);
@@ -106,12 +105,11 @@ public:
   }
 
 private:
+  /// Of gmsh.
+  static bool is_option(const std::string &name) { return name.find('.') != std::string::npos; }
   static void check_name(const std::string &name) {
-    const auto in_name = [](unsigned char c) {
-      return std::isalnum(c) != 0 || c == '_' || c == '.';
-    };
-    if (!std::ranges::all_of(name, in_name) ||
-        std::isdigit(static_cast<unsigned char>(name[0])) != 0)
+    static const std::regex wanted("[A-Za-z_][A-Za-z0-9_.]*");
+    if (!std::regex_match(name, wanted))
       throw bad_input("mesh: set gives '" + name +
                       "', which is no name of a number in a geometry: letters, digits and _, or "
                       "an option of gmsh such as Mesh.MeshSizeMax");
