@@ -6,7 +6,7 @@ import re
 import numpy as np
 
 from case_figures import FREE, partners
-from figure_tools import beside, read_grid
+from figure_tools import PREFIXES, beside, read_grid
 from solution_figures import contact_grids
 
 FUNCTIONS = {name: getattr(np, name) for name in ("hypot", "sqrt", "sin", "cos", "tan", "exp", "pi")}
@@ -131,19 +131,48 @@ class Bodies:
 
 # What a case file says
 
-def number(value):
-    """Of 3, "0.3 MPa": in the units of the case."""
-    return float(str(value).split()[0])
+POWERS = {prefix: power for power, prefix in PREFIXES.items()}
+DIMENSIONS = {"m": (1, 0), "N": (0, 1), "Pa": (-2, 1)}  # powers of length and force
+
+
+def size_of(unit, units):
+    """How many of the units of the case one of "um", "N/mm", "deg" is."""
+    size = 1.0
+    for sign, name, power in re.findall(r"([*/]?)\s*([A-Za-z]+)(?:\^(-?\d+))?", unit):
+        own = np.pi / 180 if name == "deg" else 1.0
+        for end, powers in DIMENSIONS.items():
+            if name.endswith(end) and name[:-len(end)] in POWERS:
+                own = 10.0 ** (POWERS[name[:-len(end)]] - sum(
+                    times * POWERS[units[of][:-1]] for times, of in zip(powers, ("length", "force"))))
+        size *= own ** ((-1 if sign == "/" else 1) * int(power or 1))
+    return size
+
+
+def numbers_of(parameter):
+    """Value and unit, "" without one, of the default and the bounds of a range, where they are there."""
+    given = ([parameter["default"]] if "default" in parameter else []) + list(parameter.get("range", []))
+    return [(float(value), unit.strip()) for value, _, unit in (str(one).partition(" ") for one in given)]
+
+
+def unit_of(parameter):
+    """That of its numbers without one."""
+    units = [unit for _, unit in numbers_of(parameter) if unit]
+    return parameter.get("unit", units[0] if units else "")
 
 
 def values_of(case, answer):
-    """Parameters and what is let, as far as it can be told."""
+    """Parameters and what is let, in the units of the case, as far as it can be told."""
     values = dict(FUNCTIONS)
-    for name, parameter in case.get("parameters", {}).items():
-        values[name] = number(parameter["default"] if "default" in parameter else
-                              np.mean([number(end) for end in parameter["range"]]))
-    values |= {name[3:]: numbers[0] for name, numbers in answer.of_all.items()
-               if name.startswith("mu_")}
+    parameters, units = case.get("parameters", {}), case.get("units")
+
+    def seen(value, unit):
+        return value * size_of(unit, units) if units else value
+
+    for name, parameter in parameters.items():
+        value, unit = numbers_of(parameter)[0]
+        values[name] = seen(value, unit or unit_of(parameter))
+    values |= {name[3:]: seen(numbers[0], unit_of(parameters.get(name[3:], {})))
+               for name, numbers in answer.of_all.items() if name.startswith("mu_")}
     for name, expression in case.get("let", {}).items():
         value = evaluated(expression, values)
         if value is not None:

@@ -119,8 +119,8 @@ def bases(run):
 
 def worst_parameters(run, data):
     """"radius = 0.85 m, ..." of a table with one mu."""
-    return ", ".join(f"{name.replace('_', ' ')} {data[name][0]:.4g} {unit}".strip()
-                     for name, unit in free_parameters(run))
+    return ", ".join(f"{name.replace('_', ' ')} {data[column][0]:.4g} {unit}".strip()
+                     for (name, unit), column in zip(free_parameters(run), data.dtype.names))
 
 
 def of_peak(error, data):

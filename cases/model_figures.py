@@ -67,11 +67,12 @@ def outputs(run):
 def places_of(run):
     """Rows of stresses.csv by the place that they are of, and the parameters there in words."""
     data, parameters = table(run, "stresses.csv"), free_parameters(run)
-    at = np.column_stack([data[name] for name, _ in parameters])
+    columns = data.dtype.names[:len(parameters)]  # of one that is called like another column: mu_NAME
+    at = np.column_stack([data[name] for name in columns])
     first = np.sort(np.unique(at, axis=0, return_index=True)[1])
     rows = {place: data[np.all(at == at[start], axis=1)] for place, start in zip(PLACES, first)}
-    words = [f"{place}: " + ",  ".join(f"{name.replace('_', ' ')} {own[name][0]:.4g} {unit}".strip()
-                                       for name, unit in parameters) for place, own in rows.items()]
+    words = [f"{place}: " + ",  ".join(f"{name.replace('_', ' ')} {own[column][0]:.4g} {unit}".strip()
+                                       for (name, unit), column in zip(parameters, columns)) for place, own in rows.items()]
     return rows, "\n".join(words)
 
 

@@ -19,7 +19,7 @@ void check_option(const SceneOption &option, const std::string &value,
       throw bad_input("option " + option.name + " is '" + value +
                       "': give one value, or two bounds");
     for (const std::string &number : numbers)
-      check_range(option.valid, parse_given(number, units, "", "option " + option.name),
+      check_range(option.valid, parse_given(number, units, option.unit, "option " + option.name),
                   "option " + option.name);
   } else if (std::find(option.choices.begin(), option.choices.end(), value) ==
              option.choices.end()) {

@@ -71,6 +71,28 @@ Unit parse_unit(const std::string &text) {
   return all;
 }
 
+/// What a number of the system is in.
+Unit of_system(const Dimension &dimension, const UnitSystem &system) {
+  return {dimension, std::inner_product(dimension.begin(), dimension.end(), system.begin(), 0), 1};
+}
+
+double converted(double number, const Unit &from, const Unit &to) {
+  const int exponent = from.exponent - to.exponent;
+  const double scale = std::pow(10.0, std::abs(exponent));
+  if (from.factor != to.factor) number *= from.factor / to.factor;
+  return exponent < 0 ? number / scale : number * scale;
+}
+
+/// The number and what is behind it; the whole text and "" where it begins with none.
+std::array<std::string, 2> split_unit(const std::string &text) {
+  const std::string all = trimmed(text);
+  const char *begin = all.data() + all.starts_with('+'), *end = all.data() + all.size();
+  double ignored = 0;
+  const char *behind = std::from_chars(begin, end, ignored).ptr;
+  if (behind == begin) return {all, ""};
+  return {std::string(all.data(), behind), trimmed({behind, end})};
+}
+
 } // namespace
 
 UnitSystem unit_system(const std::map<std::string, std::string> &declared) {
@@ -93,24 +115,39 @@ UnitSystem unit_system(const std::map<std::string, std::string> &declared) {
   return system;
 }
 
-Quantity parse_quantity(const std::string &text, const std::optional<UnitSystem> &system) {
-  const std::string all = trimmed(text);
-  const char *begin = all.data(), *end = begin + all.size();
-  double ignored = 0;
-  const char *behind = std::from_chars(begin + all.starts_with('+'), end, ignored).ptr;
-  const std::string unit_text = trimmed({behind, end});
-  if (behind == begin + all.starts_with('+') || unit_text.empty())
-    return {parse_number(all, "a number"), {}, false};
-  const double number = parse_number({begin, behind}, "the number of '" + all + "'");
-  const Unit unit = parse_unit(unit_text);
+Quantity parse_quantity(const std::string &text, const std::optional<UnitSystem> &system,
+                        const std::string &wanted) {
+  const auto [digits, unit_text] = split_unit(text);
+  if (unit_text.empty()) return {parse_number(digits, "a number"), {}, false};
+  const double number = parse_number(digits, "the number of '" + trimmed(text) + "'");
+  const Unit own = parse_unit(unit_text);
   if (!system)
-    throw bad_input("'" + all +
+    throw bad_input("'" + trimmed(text) +
                     "' has a unit, but no units are declared: write units: {length: mm, force: N}");
-  int exponent = unit.exponent;
-  for (std::size_t i = 0; i < 4; ++i)
-    exponent -= unit.dimension[i] * (*system)[i];
-  const double scale = std::pow(10.0, std::abs(exponent));
-  return {unit.factor * (exponent < 0 ? number / scale : number * scale), unit.dimension, true};
+  const Unit unit = wanted.empty() ? of_system(own.dimension, *system) : parse_unit(wanted);
+  const Quantity quantity{converted(number, own, unit), own.dimension, true};
+  check_dimension(quantity, unit.dimension, trimmed(text));
+  return quantity;
+}
+
+double from_unit(double value, const std::string &unit, const UnitSystem &system) {
+  const Unit own = parse_unit(unit);
+  return converted(value, own, of_system(own.dimension, system));
+}
+
+double into_unit(double value, const std::string &unit, const UnitSystem &system) {
+  const Unit own = parse_unit(unit);
+  return converted(value, of_system(own.dimension, system), own);
+}
+
+std::string unit_behind(const std::string &text) {
+  const auto [digits, unit] = split_unit(text);
+  try {
+    if (!unit.empty()) (void)parse_unit(unit);
+    return unit;
+  } catch (const Error &) { // an expression
+    return "";
+  }
 }
 
 std::string unit_in(const UnitSystem &system, const Dimension &dimension) {
@@ -185,16 +222,11 @@ void check_dimension(const Quantity &quantity, const Dimension &wanted, const st
 
 double parse_given(const std::string &text, const std::optional<UnitSystem> &system,
                    const std::string &unit, const std::string &what) {
-  const std::string all = trimmed(text);
-  const char *begin = all.data() + all.starts_with('+'), *end = all.data() + all.size();
-  double ignored = 0;
-  const char *behind = std::from_chars(begin, end, ignored).ptr;
-  if (behind == begin || behind == end || (!system && all.find(' ') == std::string::npos))
+  const bool has_unit = !split_unit(text)[1].empty();
+  if (!has_unit || (!system && trimmed(text).find(' ') == std::string::npos))
     return parse_number(text, what);
   try {
-    const Quantity quantity = parse_quantity(text, system);
-    if (!unit.empty()) check_dimension(quantity, dimension_of(unit), text);
-    return quantity.value;
+    return parse_quantity(text, system, unit).value;
   } catch (const Error &error) {
     throw bad_input(what + ": " + error.what());
   }

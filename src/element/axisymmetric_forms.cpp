@@ -2,6 +2,7 @@
 
 #include "rbvi/element/lagrange.hpp"
 #include "rbvi/element/quadrature.hpp"
+#include "rbvi/element/scalar_forms.hpp"
 
 #include <algorithm>
 
@@ -84,6 +85,11 @@ Form axisymmetric_h1_product(double length, int degree) {
   return {"", [=](const FullMu &, const Cell &cell, double *values) {
             integral(cell.reference, values);
           }};
+}
+
+Sum h1_product_of(const Scene &scene, double length) {
+  return {exact_term(scene.axisymmetric ? axisymmetric_h1_product(length, scene.degree)
+                                        : h1_product(length, scene.components, scene.degree))};
 }
 
 FunctionLibrary axisymmetric_functions() {

@@ -125,7 +125,9 @@ template <class Make> Form on_imposed(const Form &like, Index rows, Make make) {
             else
               result = make(mu, cell);
           },
-          like.boundary};
+          like.boundary,
+          {},
+          like.without};
 }
 
 /// -a(l, v), a part of l and theta of a term of a in the kernel.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 namespace rbvi {
 
@@ -150,21 +151,36 @@ void visit_values(const Form &form, const FullMu &mu, const Mesh &mesh, const Do
     }
     visitor(number, local, values.data());
   };
-  if (!form.boundary.empty()) {
-    for (const auto &[cell, facet] : mesh.facets.at(form.boundary))
-      visit(facet_cell(cell_of(mesh, cell, mapped), facet), cell,
-            local_dofs(facet_nodes(mesh.dim, mesh.degree, facet), dofs.components));
-    return;
-  }
   std::vector<int> all(
       static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree) * dofs.components));
   std::iota(all.begin(), all.end(), 0);
-  const std::vector<bool> *region = form.region.empty() ? nullptr : &mesh.region.at(form.region);
-  for (std::size_t k = 0; k < mesh.cells.size(); ++k)
-    if (region == nullptr || (*region)[k]) visit(cell_of(mesh, k, mapped), k, all);
+  for (const auto &[cell, facet] : places_of(mesh, form))
+    if (facet < 0)
+      visit(cell_of(mesh, cell, mapped), cell, all);
+    else
+      visit(facet_cell(cell_of(mesh, cell, mapped), facet), cell,
+            local_dofs(facet_nodes(mesh.dim, mesh.degree, facet), dofs.components));
 }
 
 } // namespace
+
+std::vector<CellFacet> places_of(const Mesh &mesh, const Form &form) {
+  const bool on_facets = !form.boundary.empty();
+  const auto all_of = [&](const std::string &name) {
+    if (on_facets && !name.empty()) return mesh.facets.at(name);
+    std::vector<CellFacet> cells;
+    for (std::size_t k = 0; k < mesh.cells.size(); ++k)
+      if (name.empty() || mesh.region.at(name)[k]) cells.push_back({k, -1});
+    return cells;
+  };
+  std::set<std::pair<std::size_t, int>> others;
+  for (const std::string &name : form.without)
+    for (const auto &[cell, facet] : all_of(name))
+      others.emplace(cell, facet);
+  std::vector<CellFacet> places = all_of(on_facets ? form.boundary : form.region);
+  std::erase_if(places, [&](const CellFacet &at) { return others.contains({at.cell, at.facet}); });
+  return places;
+}
 
 void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
               const Dofs &dofs, const MappedVertices &mapped, Mat matrix) {

@@ -32,15 +32,11 @@ public:
       add_reaction(form);
     else if (form.kind == OutputForm::Kind::spring)
       for (std::size_t m = 0; m < form.means.size(); ++m)
-        add_facets(form.means[m].boundary, static_cast<int>(m));
+        add_places({"", {}, form.means[m].boundary}, static_cast<int>(m));
     else if (form.place == OutputForm::Place::point)
       add_point(form);
-    else if (form.place == OutputForm::Place::boundary)
-      for (const std::string &boundary : form.at)
-        add_facets(boundary, 0);
     else
-      for (std::size_t cell = 0; cell < mesh_.cells.size(); ++cell)
-        if (is_in(form.at, cell)) add({.cell = static_cast<int>(cell)});
+      add_parts(form);
     return parts_;
   }
 
@@ -50,15 +46,26 @@ private:
     parts_.push_back(part);
   }
 
-  bool is_in(const std::vector<std::string> &regions, std::size_t cell) const {
-    return regions.empty() || std::ranges::any_of(regions, [&](const std::string &region) {
-             return region.empty() || mesh_.region.at(region)[cell];
-           });
+  void add_places(const Form &over, int term) {
+    for (const auto &[cell, facet] : places_of(mesh_, over))
+      add({.cell = static_cast<int>(cell), .facet = facet, .term = term});
   }
 
-  void add_facets(const std::string &boundary, int term) {
-    for (const auto &[cell, facet] : mesh_.facets.at(boundary))
-      add({.cell = static_cast<int>(cell), .facet = facet, .term = term});
+  /// Boundaries or regions may overlap: each cell or facet is there once.
+  void add_parts(const OutputForm &form) {
+    Form over{"", {}};
+    if (form.at.empty()) add_places(over, 0);
+    for (const std::string &name : form.at) {
+      (form.place == OutputForm::Place::boundary ? over.boundary : over.region) = name;
+      add_places(over, 0);
+      over.without.push_back(name);
+    }
+  }
+
+  bool is_in(const std::vector<std::string> &regions, std::size_t cell) const {
+    return regions.empty() || std::ranges::any_of(regions, [&](const std::string &region) {
+             return mesh_.region.at(region)[cell];
+           });
   }
 
   /// The one of the lowest number of those around it, on all ranks.
@@ -110,38 +117,25 @@ private:
     return bits;
   }
 
-  template <class Add> void visit_facets(const std::string &boundary, const Add &add_held) const {
-    for (const auto &[cell, facet] : mesh_.facets.at(boundary))
-      add_held(cell, facet);
-  }
-
   void add_term(const std::vector<bool> &held, const Form &of, int term) {
     if (!of.kernel) return;
     const auto add_held = [&](std::size_t cell, int facet) {
       if (const int bits = held_of(held, cell); bits != 0)
         add({.cell = static_cast<int>(cell), .facet = facet, .term = term, .held = bits});
     };
-    if (!of.boundary.empty())
-      visit_facets(of.boundary, add_held);
-    else
-      for (std::size_t cell = 0; cell < mesh_.cells.size(); ++cell)
-        if (is_in({of.region}, cell)) add_held(cell, -1);
+    for (const auto &[cell, facet] : places_of(mesh_, of))
+      add_held(cell, facet);
   }
 
   /// What contact number i pushes these nodes with.
   void add_contact(const std::vector<bool> &held, int i) {
     const InterfaceEntities &entities = scene_.contacts[i].entities;
-    const auto add_held = [&](std::size_t cell) {
-      if (const int bits = held_of(held, cell); bits != 0)
-        add({.cell = static_cast<int>(cell), .term = ~i, .held = bits});
-    };
-    if (entities.kind == InterfaceEntities::Kind::cells)
-      for (std::size_t cell = 0; cell < mesh_.cells.size(); ++cell) {
-        if (is_in({entities.parts.front()}, cell)) add_held(cell);
-      }
-    else
-      for (const std::string &boundary : entities.parts)
-        visit_facets(boundary, [&](std::size_t cell, int) { add_held(cell); });
+    const bool of_cells = entities.kind == InterfaceEntities::Kind::cells;
+    for (const std::string &part : entities.parts)
+      for (const auto &[cell, facet] :
+           places_of(mesh_, {of_cells ? part : "", {}, of_cells ? "" : part}))
+        if (const int bits = held_of(held, cell); bits != 0)
+          add({.cell = static_cast<int>(cell), .term = ~i, .held = bits});
   }
 
   void add_reaction(const OutputForm &form) {

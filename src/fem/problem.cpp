@@ -4,6 +4,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
+#include "rbvi/element/axisymmetric_forms.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/fem/check_scene.hpp"
 #include "rbvi/fem/means.hpp"
@@ -11,7 +12,9 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/columns.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace rbvi {
@@ -53,6 +56,18 @@ std::vector<FreeBody> put_springs(Scene &scene, const Mesh &mesh, Dofs &dofs) {
   return bodies;
 }
 
+/// The longest side of the box of the mesh.
+double extent_of(const Mesh &mesh) {
+  std::vector<double> ends(6, -std::numeric_limits<double>::infinity());
+  for (const Point &x : mesh.points)
+    for (std::size_t k = 0; k < 3; ++k) {
+      ends[k] = std::max(ends[k], x[k]);
+      ends[3 + k] = std::max(ends[3 + k], -x[k]);
+    }
+  over_ranks(mesh.comm, MPI_MAX, ends);
+  return std::max({ends[0] + ends[3], ends[1] + ends[4], ends[2] + ends[5]});
+}
+
 Scene checked(Scene scene) {
   check_functions(scene);
   check_outputs(scene);
@@ -79,6 +94,7 @@ Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options, Index c
       contact_gather_(contact_gather),
       a_(make_summed<Mat>(scene_->a, scene_->parameters, mesh_, dofs_)),
       f_(make_summed<Vec>(scene_->f, scene_->parameters, mesh_, dofs_)) {
+  if (scene_->v_length == 0) scene_->v_product = h1_product_of(*scene_, extent_of(mesh_));
   if (!free_.empty()) stiffen_springs();
   if (imposes_values(*scene_))
     check_imposed(*scene_, generic_point(scene_->parameters), mesh_, dofs_);

@@ -239,8 +239,9 @@ struct Undistributed {
   std::map<std::string, std::vector<SerialFacet>> facets; ///< of every boundary
   std::map<std::string, std::vector<CurvePiece>> curves;  ///< of those with contact
   std::size_t points = 0;                                 ///< of its DM
-  std::map<std::string, std::vector<char>> marks;         ///< per region and boundary, of them
-  std::vector<int> bodies;                                ///< of the cells, then 0
+  /// Per region and per boundary, which may have the name of a region, of them.
+  std::map<std::string, std::vector<char>> in_region, on_boundary;
+  std::vector<int> bodies; ///< of the cells, then 0
 };
 
 /// Fills in the points and their marks. `dm`: not distributed yet.
@@ -251,9 +252,9 @@ void mark(DM dm, const MeshRecipe &recipe, Undistributed &all) {
   all.bodies = bodies_of(all.mesh);
   all.bodies.resize(all.points);
   for (const std::string &name : recipe.regions)
-    all.marks[name] = marked_cells(all.mesh, name, all.points);
+    all.in_region[name] = marked_cells(all.mesh, name, all.points);
   for (const std::string &name : recipe.boundaries)
-    all.marks[name] = marked_nodes(dm, all.mesh, all.facets[name], all.points);
+    all.on_boundary[name] = marked_nodes(dm, all.mesh, all.facets[name], all.points);
 }
 
 void fill_nodes_and_cells(Mesh &mesh, const Migration &migration, const EdgePoints &edges,
@@ -292,8 +293,7 @@ void fill_bodies(Mesh &mesh, const Migration &migration, const std::vector<int> 
 void share(MPI_Comm comm, std::vector<CurvePiece> &pieces) {
   std::vector<PetscInt> packed;
   for (const auto &[vertices, loop, ends] : pieces) {
-    packed.insert(packed.end(),
-                  {static_cast<PetscInt>(vertices.size()), loop, ends[0], ends[1]});
+    packed.insert(packed.end(), {static_cast<PetscInt>(vertices.size()), loop, ends[0], ends[1]});
     packed.insert(packed.end(), vertices.begin(), vertices.end());
   }
   auto size = static_cast<int>(packed.size());
@@ -357,12 +357,12 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
     mesh.curves[name] = all.curves[name];
   }
   for (const std::string &name : scene.mesh.regions)
-    mesh.region[name] = own_region(mesh, migration.arrived(all.marks[name], MPI_CHAR));
+    mesh.region[name] = own_region(mesh, migration.arrived(all.in_region[name], MPI_CHAR));
   std::unordered_map<PetscInt, std::size_t> cell_of; // by natural number
   for (std::size_t cell = 0; cell < mesh.cells.size(); ++cell)
     cell_of.emplace(mesh.natural_cell[cell], cell);
   for (const std::string &name : scene.mesh.boundaries) {
-    mesh.boundary[name] = at_nodes(mesh, migration.arrived(all.marks[name], MPI_CHAR));
+    mesh.boundary[name] = at_nodes(mesh, migration.arrived(all.on_boundary[name], MPI_CHAR));
     share(comm, all.facets[name]);
     mesh.facets[name] = own_facets(mesh, cell_of, all.facets[name]);
   }

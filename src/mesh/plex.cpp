@@ -114,19 +114,24 @@ void orient_cells(int dim, const std::vector<Point> &points,
 
 namespace {
 
+/// How labels begin: a region and a boundary may have one name.
+const std::string of_region = "region ", of_boundary = "boundary ";
+
 /// With a label of value 1 for each region (cells) and boundary (facets and their closure).
 Handle<DM> labelled_plex(const SerialMesh &mesh) {
   Handle<DM> dm = make_plex(PETSC_COMM_SELF, mesh, true);
   DMLabel label = nullptr;
-  for (const auto &[name, cells] : mesh.region) {
+  const auto create = [&](const std::string &name) {
     RBVI_CALL(DMCreateLabel(dm.get(), name.c_str()));
     RBVI_CALL(DMGetLabel(dm.get(), name.c_str(), &label));
+  };
+  for (const auto &[name, cells] : mesh.region) {
+    create(of_region + name);
     for (const int cell : cells)
       RBVI_CALL(DMLabelSetValue(label, cell, 1));
   }
   for (const auto &[name, facets] : mesh.boundary) {
-    RBVI_CALL(DMCreateLabel(dm.get(), name.c_str()));
-    RBVI_CALL(DMGetLabel(dm.get(), name.c_str(), &label));
+    create(of_boundary + name);
     label_facets(dm.get(), label, mesh, facets);
     RBVI_CALL(DMPlexLabelComplete(dm.get(), label));
   }
@@ -151,10 +156,10 @@ SerialMesh from_plex(DM dm, const SerialMesh &like) {
   }
   orient_cells(mesh.dim, mesh.points, mesh.cells);
   for (const auto &[name, cells] : like.region)
-    for (const PetscInt cell : labelled_points(dm, name, 0))
+    for (const PetscInt cell : labelled_points(dm, of_region + name, 0))
       mesh.region[name].push_back(static_cast<int>(cell - first_cell));
   for (const auto &[name, facets] : like.boundary)
-    for (const PetscInt facet : labelled_points(dm, name, 1)) {
+    for (const PetscInt facet : labelled_points(dm, of_boundary + name, 1)) {
       const auto vertices = vertices_of(dm, facet);
       std::array<int, 3> numbers{-1, -1, -1};
       for (int i = 0; i < dim; ++i)

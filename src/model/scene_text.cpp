@@ -200,6 +200,7 @@ void add_sum(const std::string &name, const Scene &scene, const Sum &sum, bool b
     if (term.theta && term.form.kernel) {
       text.add(own + ".kernel", term.form.kernel.record);
       text.add(own + " over", term.form.region + term.form.boundary);
+      if (!term.form.without.empty()) text.add(own + " not over", joined(term.form.without));
     }
     add_kernel(own, scene, term.form, bilinear, text);
     if (term.theta) add_factors(own, *term.theta, text);

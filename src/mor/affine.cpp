@@ -147,14 +147,13 @@ void visit_domain(const Problem &problem, const Sum &sum, const std::vector<int>
   const auto per_cell = static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree));
   for (const int term : terms) {
     const Form &form = sum[term].form;
-    for (std::size_t k = 0; k < mesh.cells.size() && form.boundary.empty(); ++k) {
-      if (!form.region.empty() && !mesh.region.at(form.region)[k]) continue;
-      const auto nodes = nodes_of(mesh, k);
-      visitor(std::vector<int>{nodes.begin(), nodes.begin() + per_cell},
-              TouchedCell{mesh.natural_cell[k], cell_of(mesh, k).reference, {}, term});
-    }
-    if (form.boundary.empty()) continue;
-    for (const auto &[k, facet] : mesh.facets.at(form.boundary)) {
+    for (const auto &[k, facet] : places_of(mesh, form)) {
+      if (facet < 0) {
+        const auto nodes = nodes_of(mesh, k);
+        visitor(std::vector<int>{nodes.begin(), nodes.begin() + per_cell},
+                TouchedCell{mesh.natural_cell[k], cell_of(mesh, k).reference, {}, term});
+        continue;
+      }
       std::vector<int> nodes = facet_nodes(mesh.dim, mesh.degree, facet);
       for (int &node : nodes)
         node = nodes_of(mesh, k)[node];

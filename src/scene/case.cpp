@@ -95,13 +95,12 @@ void apply_values(CaseNode &root, const CaseChanges &changes, Defects &defects) 
 /// Of a parameter without a range.
 SceneOption option_of_constant(const Reader &reader, const std::string &name,
                                const CaseNode &node) {
-  const CaseNode *unit = node.find("unit"), *says = node.find("says");
+  const CaseNode *says = node.find("says");
   SceneOption option{name, entry(node, "default").value, says == nullptr ? "" : says->value, {}};
-  if (unit != nullptr) option.help += (option.help.empty() ? "in " : ", in ") + unit->value;
-  if (const CaseNode *limits = node.find("limits")) {
-    const std::vector<double> bounds = numbers_in(reader, *limits, 2);
-    option.valid = {bounds[0], bounds[1]};
-  }
+  option.unit = unit_of(node);
+  if (!option.unit.empty()) option.help += (option.help.empty() ? "in " : ", in ") + option.unit;
+  if (const CaseNode *limits = node.find("limits"))
+    option.valid = range_in(reader, *limits, option.unit);
   option.may_vary = true;
   return option;
 }
@@ -230,6 +229,22 @@ void check_version(const CaseNode &root, Defects &defects) {
     });
 }
 
+/// Says `unit:` of parameters whose numbers have one, so that other numbers in their place are in
+/// that unit, too.
+void settle_units(CaseNode &root) {
+  for (auto &[section_name, all] : root.entries)
+    if (section_name == "parameters")
+      for (auto &[name, parameter] : all.entries)
+        if (const std::string unit = unit_of(parameter);
+            parameter.find("unit") == nullptr && !unit.empty()) {
+          CaseNode own = parameter;
+          own.kind = CaseNode::Kind::value;
+          own.entries.clear();
+          own.value = unit;
+          parameter.entries.emplace_back("unit", own);
+        }
+}
+
 /// The scene of a file whose changes are made. Throws its defects.
 Scene scene_of(const CaseNode &root, Defects &defects) {
   Reader reader{.root = root, .units = units_of(root, defects)};
@@ -276,12 +291,19 @@ bool is_scene_file(const std::string &text, const std::string &file) {
 SceneEntry read_case(const std::string &text, const std::string &file, const CaseChanges &changes) {
   CaseNode root = parse_document(text, file);
   Defects defects(file);
+  settle_units(root);
   if (!changes.variant.empty()) apply_variant(root, changes.variant, defects);
   apply_values(root, changes, defects);
+  settle_units(root);
   SceneEntry scene_entry{name_of(root, file)};
   if (const CaseNode *says = root.find("says")) scene_entry.summary = says->value;
   const Reader reader{.root = root, .units = units_of(root, defects)};
   scene_entry.units = reader.units;
+  for (const char *section_name : {"parameters", "choices"})
+    for (const auto &[name, node] : section(reader, section_name).entries)
+      if (std::ranges::find(changes.taken, name) != changes.taken.end())
+        defects.add(node,
+                    "-" + name + " is an option of the program: give '" + name + "' another name");
   for (const auto &[name, choice] : section(reader, "choices").entries)
     defects.collect(choice, [&, &own = name, &node = choice] {
       if (section(reader, "parameters").find(own) != nullptr)
@@ -317,6 +339,7 @@ SceneEntry read_case(const std::string &text, const std::string &file, const Cas
     Defects own(file);
     CaseNode chosen = with_choices(root, options, own);
     apply_values(chosen, changes, own); // above those of alternatives
+    settle_units(chosen);
     own.throw_all();
     return scene_of(chosen, own);
   };

@@ -1,6 +1,6 @@
-#include "rbvi/core/formula.hpp"
-#include "reader.hpp"
+#include "dimensions.hpp"
 
+#include "rbvi/core/outputs.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/scene/case.hpp"
 
@@ -34,6 +34,16 @@ void check_names(const Reader &reader, const CaseNode &node, const std::vector<s
   });
 }
 
+/// Whether an expression may be this name alone.
+bool is_name(const std::string &text) {
+  try {
+    const Expression whole = parse_expression(text);
+    return whole.program().size() == 1 && whole.free_names() == std::vector{text};
+  } catch (const Error &) {
+    return false;
+  }
+}
+
 /// "contact.*.friction" -> "contact: friction"
 std::string in_words(const std::string &table) {
   std::vector<std::string> names;
@@ -51,7 +61,8 @@ bool may_be_list(const CaseKey &key) {
 
 class Walk {
 public:
-  Walk(const Reader &reader, Defects &defects) : reader_(reader), defects_(defects) {
+  Walk(const Reader &reader, Defects &defects)
+      : reader_(reader), defects_(defects), dimensions_(reader) {
     known_ = {"x", "y", "z", "nx", "ny", "nz"};
     for (const char *section_name : {"parameters", "let"})
       for (const auto &[name, node] : section(reader, section_name).entries)
@@ -77,7 +88,8 @@ public:
                                      ? ""
                                      : " (quote a text or an expression that has a comma)"));
       else
-        check(*keys[static_cast<std::size_t>(any - names.begin())], name, value, table);
+        check(*keys[static_cast<std::size_t>(any - names.begin())], name, value, table,
+              unit_of(node));
     }
     std::string missing; // of one place one defect is told
     for (const CaseKey *key : keys)
@@ -91,8 +103,9 @@ public:
   }
 
 private:
+  /// `own`: the unit of a parameter.
   void check(const CaseKey &key, const std::string &name, const CaseNode &value,
-             const std::string &table) {
+             const std::string &table, const std::string &own) {
     const bool may_be_table = key.value.find("table") != std::string::npos;
     if (value.is_table()) {
       if (!may_be_table && key.value != "anything")
@@ -105,7 +118,9 @@ private:
       defects_.add(value, name + " is a list: " + key.value + " belongs here");
       return;
     }
-    defects_.collect(value, [&] { check_unit(reader_, value, key.dimension); });
+    if (!key.dimension.empty() || key.value.find("expression") != std::string::npos ||
+        key.value.find("number") != std::string::npos)
+      defects_.collect(value, [&] { check_dimension(key, value, own); });
     if (key.value == "table" && !(value.is_value() && value.value.empty()))
       defects_.add(value, name + " is a table: write 'NAME: value' below it, or {NAME: value}");
     else if (key.value == "expression" ||
@@ -114,6 +129,24 @@ private:
     else if (key.value.starts_with("expressions") || key.value.starts_with("[expression"))
       for (const CaseNode &item : value.items)
         check_names(reader_, item, known_, defects_);
+  }
+
+  void check_dimension(const CaseKey &key, const CaseNode &value, const std::string &own) const {
+    const std::string physics = section(reader_, "physics").value;
+    const bool force = key.dimension.starts_with("N");
+    const bool thin = (key.table == "imposed.*" || key.table == "springs.*") && force &&
+                      physics.starts_with("plane");
+    // The tension of a membrane is 1, a force per length.
+    const bool flat = key.table == "loads.*" && physics == "membrane";
+    try {
+      dimensions_.check(value, key.table == "parameters.*" ? own
+                               : thin                      ? key.dimension + "/m"
+                               : flat                      ? key.dimension + "*m"
+                                                           : key.dimension);
+    } catch (const Error &error) {
+      throw bad_input((thin ? std::string("in plane problems forces are per thickness: ") : "") +
+                      error.what());
+    }
   }
 
   void visit_table(const std::string &name, const CaseNode &value, const std::string &table) {
@@ -132,12 +165,33 @@ private:
 
   const Reader &reader_;
   Defects &defects_;
+  Dimensions dimensions_;
   std::vector<std::string> known_, in_outputs_;
 };
+
+/// Parameters and lets are called as nothing else in expressions, parameters as no column of
+/// tables.
+void check_own_names(const Reader &reader, Defects &defects) {
+  for (const char *section_name : {"parameters", "let"})
+    for (const auto &[name, node] : section(reader, section_name).entries)
+      defects.collect(node, [&, &own = name, is_let = std::string(section_name) == "let"] {
+        if (is_coordinate(own)) throw bad_input("'" + own + "' is the name of a coordinate");
+        if (!is_name(own))
+          throw bad_input("'" + own +
+                          "' is no name that an expression can have: letters, digits "
+                          "and _, and neither pi, and, or, not nor a function");
+        if (!is_let && is_table_column(own))
+          throw bad_input("tables have a column '" + own +
+                          "' already: give the parameter another "
+                          "name");
+      });
+}
 
 } // namespace
 
 void check_keys(const Reader &reader, Defects &defects) {
+  check_own_names(reader, defects);
+  if (!reader.units) check_labels(section(reader, "parameters"), defects);
   Walk(reader, defects).visit(reader.root, "");
 }
 

@@ -222,7 +222,7 @@ ContactRecipe contact_in(Reader &reader, const CaseNode &node, Scene &scene) {
   if (above != nullptr) {
     check_used(node, "of a membrane", {"at", "above", "lumped"});
     return obstacle({entry(node, "at").value, point_value_of(formula_in(reader, *above)),
-                     yes_or(node, "lumped", false)});
+                     yes_or(node, "lumped", true)});
   }
   return against->is_table() ? with_something_rigid(reader, node, *against, scene)
                              : with_another_body(reader, node, against->value, scene);

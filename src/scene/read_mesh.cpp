@@ -149,7 +149,7 @@ bool holds_of_slopes(const Reader &reader, const Scene &scene, const Holds &hold
   std::vector<Expression> components;
   for (const Expression &component : map)
     components.push_back(pieces.named(expanded(component, reader.lets)));
-  std::vector<std::string> names = reader.parameters;
+  std::vector<std::string> names = reader.values;
   const std::vector<std::string> conditions = pieces.all();
   names.insert(names.end(), {"x", "y", "z"});
   names.insert(names.end(), conditions.begin(), conditions.end());

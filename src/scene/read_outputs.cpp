@@ -21,10 +21,15 @@ const std::vector<std::pair<std::string, Kind>> kinds{
 
 /// Throws bad_input for a name that a table has already.
 void check_name(const std::string &name, const Scene &scene) {
-  const auto has = [&](const auto &list, auto member) {
-    return std::ranges::find(list, name, member) != list.end();
+  std::vector<std::string> columns;
+  for (const Parameter &parameter : scene.parameters.all)
+    columns.push_back(parameter.name);
+  for (const OutputForm &other : scene.outputs)
+    columns.insert(columns.end(), {other.name, other.name + "_error"});
+  const auto has = [&](const std::string &column) {
+    return is_table_column(column) || std::ranges::find(columns, column) != columns.end();
   };
-  if (is_table_column(name) || has(scene.parameters.all, &Parameter::name))
+  if (has(name) || has(name + "_error"))
     throw bad_input("tables have a column '" + name + "' already: give the output another name");
 }
 

@@ -4,6 +4,7 @@
 #include "rbvi/core/validity.hpp"
 
 #include <algorithm>
+#include <cctype>
 
 namespace rbvi {
 
@@ -12,46 +13,26 @@ namespace {
 /// A positive range beyond a decade is one of a logarithm.
 constexpr double decade = 10;
 
-Range range_in(const Reader &reader, const CaseNode &node) {
-  const std::vector<double> bounds = numbers_in(reader, node, 2);
-  if (!(bounds[0] < bounds[1]))
-    throw bad_input("[" + short_number(bounds[0]) + ", " + short_number(bounds[1]) +
+Range rising(const Range &range) {
+  if (!(range.lower < range.upper))
+    throw bad_input("[" + short_number(range.lower) + ", " + short_number(range.upper) +
                     "]: the lower bound comes first");
-  return {bounds[0], bounds[1]};
+  return range;
 }
 
 bool holds(const Range &range, double value) {
   return value >= range.lower && value <= range.upper;
 }
 
-/// That of the first of its numbers that has a unit; none of an expression.
-Dimension dimension_of_numbers(const Reader &reader, const CaseNode &node) {
-  for (const char *key : {"default", "range"})
-    if (const CaseNode *numbers = node.find(key); numbers != nullptr)
-      for (const CaseNode &one :
-           numbers->items.empty() ? std::vector<CaseNode>{*numbers} : numbers->items)
-        try {
-          const Quantity quantity = parse_quantity(one.value, reader.units);
-          if (quantity.has_unit) return quantity.dimension;
-        } catch (const Error &) { // an expression, or what is refused where it is read
-        }
-  return {};
-}
-
 Parameter parameter_in(Reader &reader, const std::string &name, const CaseNode &node) {
-  Parameter parameter{name, "", 0, 0, number_in(reader, entry(node, "default"))};
+  const std::string unit = unit_of(node);
+  Parameter parameter{name, unit, 0, 0, number_in(reader, entry(node, "default"), unit)};
   parameter.lower = parameter.upper = parameter.value;
-  if (const CaseNode *unit = node.find("unit"))
-    parameter.unit = unit->value;
-  else if (reader.units)
-    parameter.unit = unit_in(*reader.units, dimension_of_numbers(reader, node));
-  for (const char *name_of_numbers : {"range", "default", "limits"})
-    if (const CaseNode *numbers = node.find(name_of_numbers); numbers != nullptr && reader.units)
-      check_unit(reader, *numbers, parameter.unit);
-  if (const CaseNode *limits = node.find("limits")) parameter.valid = range_in(reader, *limits);
+  if (const CaseNode *limits = node.find("limits"))
+    parameter.valid = rising(range_in(reader, *limits, unit));
   const CaseNode *range = node.find("range");
   if (range != nullptr) {
-    const Range own = range_in(reader, *range);
+    const Range own = rising(range_in(reader, *range, unit));
     parameter.lower = own.lower;
     parameter.upper = own.upper;
     if (!holds(own, parameter.value))
@@ -59,6 +40,29 @@ Parameter parameter_in(Reader &reader, const std::string &name, const CaseNode &
                       ", lies outside of its range");
   }
   return parameter;
+}
+
+/// How many of the unit of the case one of a unit is.
+double size_of(const Reader &reader, const std::string &unit) {
+  return reader.units && !unit.empty() ? from_unit(1, unit, *reader.units) : 1;
+}
+
+/// Another name for the value of a parameter in its unit, and the let that makes the parameter of
+/// it.
+std::string value_in_unit(Reader &reader, const std::string &name, const std::string &unit) {
+  const double size = size_of(reader, unit);
+  if (size == 1) return name;
+  std::string value = name + "_in_";
+  for (const char c : unit)
+    value += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  while (section(reader, "parameters").find(value) != nullptr ||
+         section(reader, "let").find(value) != nullptr)
+    value += '_';
+  reader.lets.push_back(
+      {name, parse_expression(size > 1 ? value + " * " + shortest_number(size)
+                                       : value + " / " +
+                                             shortest_number(into_unit(1, unit, *reader.units)))});
+  return value;
 }
 
 bool is_log_spaced(const CaseNode &node, const Parameter &parameter) {
@@ -75,7 +79,6 @@ bool is_constant(const CaseNode &parameter) {
 }
 
 void check_new(const Reader &reader, const std::string &name) {
-  if (is_coordinate(name)) throw bad_input("'" + name + "' is the name of a coordinate");
   if (std::ranges::find(reader.parameters, name) != reader.parameters.end() ||
       std::ranges::find(reader.lets, name, &Let::name) != reader.lets.end())
     throw bad_input("there is a parameter '" + name + "' already");
@@ -88,7 +91,10 @@ void read_constants(Reader &reader, Defects &defects) {
         check_new(reader, own);
         const Parameter constant = parameter_in(reader, own, value);
         reader.constants.push_back(constant);
-        reader.lets.push_back({own, Expression({{Operation::number, 0, constant.value}}, {})});
+        const double seen = reader.units && !constant.unit.empty()
+                                ? from_unit(constant.value, constant.unit, *reader.units)
+                                : constant.value;
+        reader.lets.push_back({own, Expression({{Operation::number, 0, seen}}, {})});
       });
 }
 
@@ -120,8 +126,9 @@ void limit(Reader &reader, const Expression &value, const Range &range, Scene &s
   if (value.program().size() != 1 || value.free_names().size() != 1) return;
   Parameter *parameter = named(reader, value.free_names().front(), scene);
   if (parameter == nullptr) return;
-  parameter->valid.lower = std::max(parameter->valid.lower, range.lower);
-  parameter->valid.upper = std::min(parameter->valid.upper, range.upper);
+  const double size = size_of(reader, parameter->unit);
+  parameter->valid.lower = std::max(parameter->valid.lower, range.lower / size);
+  parameter->valid.upper = std::min(parameter->valid.upper, range.upper / size);
 }
 
 void check_limits(const Reader &reader, const Scene &scene, Defects &defects) {
@@ -141,13 +148,15 @@ void read_parameters(Reader &reader, Scene &scene, Defects &defects) {
   read_constants(reader, defects);
   for (const auto &[name, node] : all.entries)
     if (!is_constant(node) && (reader.used.empty() || reader.used.contains(name)))
-      reader.parameters.push_back(name);
+      defects.collect(node, [&, &own = name, &value = node] {
+        reader.values.push_back(value_in_unit(reader, own, unit_of(value)));
+        reader.parameters.push_back(own);
+      });
   reader.used.clear();
   read_lets(reader, defects);
   for (const auto &[name, node] : all.entries) {
     if (std::ranges::find(reader.parameters, name) == reader.parameters.end()) continue;
     defects.collect(node, [&, &own = name, &value = node] {
-      if (is_coordinate(own)) throw bad_input("'" + own + "' is the name of a coordinate");
       const Parameter parameter = parameter_in(reader, own, value);
       if (is_log_spaced(value, parameter))
         scene.coordinates[int(scene.parameters.all.size())] = {logarithm(), exponential()};

@@ -19,6 +19,16 @@ std::vector<std::string> regions_in(const CaseNode &node) {
   return regions;
 }
 
+/// Of terms from `first` on, each over one of some parts, which may overlap: what parts share is of
+/// the first of them alone.
+void count_once(const std::vector<std::string> &parts, std::size_t first, Sum &terms) {
+  for (; first < terms.size(); ++first) {
+    Form &form = terms[first].form;
+    const auto own = std::ranges::find(parts, form.region + form.boundary);
+    form.without.assign(parts.begin(), own);
+  }
+}
+
 void add(std::vector<int> &positions, const std::vector<int> &more) {
   positions.insert(positions.end(), more.begin(), more.end());
   std::ranges::sort(positions);
@@ -198,7 +208,9 @@ void read_material(Reader &reader, const CaseNode &node, Scene &scene) {
         parse_expression("(" + expression_in(reader, *expansion).text() + ") * (" +
                          expression_in(reader, *temperature).text() + ")");
     own.free_strain = point_value_of(formula_of(reader, {strain}));
+    const std::size_t first = scene.f.size();
     add_free_strain(reader, constants.swelling(), strain, regions, scene);
+    count_once(regions, first, scene.f);
   }
   scene.materials.push_back(own);
   const auto of_map = factors_of_map(reader, scene);
@@ -210,6 +222,7 @@ void read_material(Reader &reader, const CaseNode &node, Scene &scene) {
     for (const std::string &region : regions)
       terms.push_back(mapped_term(stiffness(region, own.of_cell, scene), positions));
   }
+  count_once(regions, 0, terms);
   scene.a.insert(scene.a.end(), terms.begin(), terms.end());
 }
 
@@ -264,6 +277,7 @@ void read_load(Reader &reader, const CaseNode &node, Scene &scene) {
         return expanded(component, reader.lets).constant() == 0.0;
       }))
     return;
+  const std::size_t first = scene.f.size();
   for (const std::string &part : regions_in(node)) {
     const auto form = [&](const Formula &formula) {
       return force != nullptr ? body_load(part, point_map_of(formula), scene.components,
@@ -275,6 +289,7 @@ void read_load(Reader &reader, const CaseNode &node, Scene &scene) {
       throw bad_input("pressures and tractions act on boundaries: name one");
     add_load(reader, components, form, scene);
   }
+  count_once(regions_in(node), first, scene.f);
 }
 
 } // namespace
@@ -299,9 +314,12 @@ void read_physics(Reader &reader, Scene &scene, Defects &defects) {
       defects.collect(node, [&, &value = node] { read_material(reader, value, scene); });
   for (const auto &[name, node] : section(reader, "loads").entries)
     defects.collect(node, [&, &value = node] { read_load(reader, value, scene); });
-  scene.v_product = {exact_term(scene.axisymmetric
-                                    ? axisymmetric_h1_product(1, scene.degree)
-                                    : h1_product(1, scene.components, scene.degree))};
+  const CaseNode &length = section(reader, "v_length");
+  defects.collect(length, [&] {
+    scene.v_length = number_or(reader, reader.root, "v_length", 0);
+    if (!(scene.v_length > 0 || length.value.empty())) throw bad_input("v_length is positive");
+    scene.v_product = h1_product_of(scene, scene.v_length > 0 ? scene.v_length : 1);
+  });
 }
 
 } // namespace rbvi

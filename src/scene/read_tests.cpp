@@ -29,10 +29,9 @@ void read_place(const Reader &reader, const std::string &name, const CaseNode &n
   const CaseNode &declared = declaration_of(reader, name);
   if (declared.find("range") == nullptr)
     throw bad_input(name + " is a constant: a test is at parameters that have a range");
-  const double value = number_in(reader, node);
+  const double value = number_in(reader, node, unit_of(declared));
   const auto used = std::ranges::find(scene.parameters.all, name, &Parameter::name);
   if (used == scene.parameters.all.end()) return;
-  if (reader.units) check_unit(reader, node, used->unit);
   check_range(used->valid, value, name);
   if (declared.find("limits") == nullptr) check_range({used->lower, used->upper}, value, name);
   test.at[name] = value;

@@ -32,17 +32,27 @@ Expression expression_in(const Reader &reader, const CaseNode &node) {
   }
 }
 
-void check_unit(const Reader &reader, const CaseNode &node, const std::string &unit) {
-  if (unit.empty()) return;
-  for (const CaseNode &item : node.items)
-    check_unit(reader, item, unit);
-  if (!node.is_value()) return;
-  std::optional<Quantity> quantity;
-  try {
-    quantity = parse_quantity(node.value, reader.units);
-  } catch (const Error &) { // an expression, or told elsewhere
-  }
-  if (quantity) check_dimension(*quantity, dimension_of(unit), node.value);
+std::string unit_of(const CaseNode &parameter) {
+  if (const CaseNode *unit = parameter.find("unit")) return unit->value;
+  for (const char *key : {"default", "range", "limits"})
+    if (const CaseNode *numbers = parameter.find(key))
+      for (const CaseNode &one :
+           numbers->items.empty() ? std::vector<CaseNode>{*numbers} : numbers->items)
+        if (const std::string unit = unit_behind(one.value); !unit.empty()) return unit;
+  return "";
+}
+
+double number_in(const Reader &reader, const CaseNode &node, const std::string &unit) {
+  if (!reader.units || unit.empty()) return number_in(reader, node);
+  if (!unit_behind(node.value).empty()) return parse_quantity(node.value, reader.units, unit).value;
+  const double value = number_in(reader, node);
+  return expression_in(reader, node).free_names().empty() ? value
+                                                          : into_unit(value, unit, *reader.units);
+}
+
+Range range_in(const Reader &reader, const CaseNode &list, const std::string &unit) {
+  (void)numbers_in(reader, list, 2); // two numbers
+  return {number_in(reader, list.items[0], unit), number_in(reader, list.items[1], unit)};
 }
 
 double number_in(const Reader &reader, const CaseNode &node) {
@@ -97,6 +107,9 @@ std::vector<std::string> names_in(const CaseNode &node) {
       names.push_back(trimmed(name));
   for (const CaseNode &item : node.items)
     names.push_back(item.value);
+  for (std::size_t i = 0; i < names.size(); ++i) // a name twice is there once
+    names.erase(std::remove(names.begin() + std::ptrdiff_t(i) + 1, names.end(), names[i]),
+                names.end());
   if (names.empty()) throw bad_input("a name, or a list of names, belongs here");
   return names;
 }
@@ -108,7 +121,7 @@ const CaseNode &entry(const CaseNode &table, const std::string &name) {
 }
 
 Formula formula_of(Reader &reader, std::vector<Expression> values) {
-  Formula formula{std::move(values), reader.lets, reader.parameters};
+  Formula formula{std::move(values), reader.lets, reader.values};
   for (const int position : dependence_of(formula))
     reader.used.insert(reader.parameters[static_cast<std::size_t>(position)]);
   return formula;
@@ -136,7 +149,7 @@ Factor factor_of(Reader &reader, const Expression &value) {
 
 std::optional<std::vector<Product>> products_of(Reader &reader, const Expression &value) {
   const Expression whole = expanded(value, reader.lets);
-  const auto sum = separated(whole, reader.parameters);
+  const auto sum = separated(whole, reader.values);
   if (!sum) return std::nullopt;
   std::vector<Product> products;
   for (const auto &[in_parameters, at_point] : *sum) {

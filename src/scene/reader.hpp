@@ -13,12 +13,17 @@
 namespace rbvi {
 
 /// A case file with its changes while its scene is made.
+///
+/// Values of a parameter are in its unit wherever they are given, kept or printed (Mu, FullMu,
+/// Parameter, files). What expressions see by its name is in the units of the case, and here alone
+/// one becomes the other: by a let of that name, its value in its unit times what one of it is.
 struct Reader {
   const CaseNode &root;
   std::optional<UnitSystem> units{};
-  std::vector<Parameter> constants{}; ///< parameters without a range, the first of the lets
+  std::vector<Parameter> constants{}; ///< parameters without a range, among the first of the lets
   std::vector<Let> lets{};
   std::vector<std::string> parameters{}; ///< names, in the order of FullMu
+  std::vector<std::string> values{};     ///< what formulas call their values in their units
   std::set<std::string> used{};          ///< parameters that some function depends on
   std::map<std::string, std::vector<Circle>> circles{}; ///< by boundary or region
 };
@@ -49,9 +54,13 @@ const CaseNode &entry(const CaseNode &table, const std::string &name);
 /// What is this value by itself, a parameter or a constant, cannot leave the range.
 void limit(Reader &reader, const Expression &value, const Range &range, Scene &scene);
 
-/// Throws bad_input for a number with a unit of another dimension than that unit's; other texts
-/// pass.
-void check_unit(const Reader &reader, const CaseNode &node, const std::string &unit);
+/// That of the numbers of a parameter: its `unit`, else that of the first of them that has one.
+std::string unit_of(const CaseNode &parameter);
+/// A number in the unit of a parameter ("": that of the case): without names and a unit it is in
+/// that unit, with names in the units of the case.
+double number_in(const Reader &reader, const CaseNode &node, const std::string &unit);
+/// Two.
+Range range_in(const Reader &reader, const CaseNode &list, const std::string &unit);
 
 /// Of some expressions; the parameters that they depend on count as used.
 Formula formula_of(Reader &reader, std::vector<Expression> values);

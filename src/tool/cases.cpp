@@ -6,6 +6,7 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/tool/case_file.hpp"
 #include "rbvi/tool/run_directory.hpp"
+#include "table.hpp"
 
 #include <algorithm>
 
@@ -76,7 +77,7 @@ GivenCase own_scene(const std::string &scene, const Registry &registry) {
 }
 
 CaseChanges changes_of_run() {
-  return {text_of("variant"), settings_of(text_of("set"))};
+  return {text_of("variant"), settings_of(text_of("set")), taken_names()};
 }
 
 /// The text with the name that its file gives the scene.

@@ -13,6 +13,7 @@
 #include "rbvi/solve/high_fidelity.hpp"
 #include "rbvi/tool/cases.hpp"
 #include "rbvi/tool/commands.hpp"
+#include "table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -229,7 +230,7 @@ void check_variants(const MeasureOptions &options) {
   Complaints complaints;
   for (const auto &[variant, says] : entry.variants)
     complaints.collect("variant " + variant, [&, &name = variant] {
-      (void)make_scene(read_case(options.scene_text, file, {name, {}}));
+      (void)make_scene(read_case(options.scene_text, file, {name, {}, taken_names()}));
     });
   complaints.throw_all();
 }

@@ -4,10 +4,12 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/high_fidelity_constant.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/par/small_eigen.hpp"
 #include "rbvi/par/small_svd.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <set>
 
 namespace rbvi {
@@ -64,7 +66,8 @@ const std::vector<std::string> &eigen_prefixes() {
 
 void check_eigen_options(const OfflineOptions &options, EigenUse use) {
   std::set<std::string> asked; // prefixes
-  for (const std::string &name : unread_names(eigen_prefixes())) {
+  const std::vector<std::string> names = unread_names(eigen_prefixes());
+  for (const std::string &name : names) {
     if (is_ineffective(name))
       throw bad_input(
           "-" + name +
@@ -90,6 +93,23 @@ void check_eigen_options(const OfflineOptions &options, EigenUse use) {
       if (name.starts_with(prefix)) unknown += " -" + name;
   }
   if (!unknown.empty()) throw bad_input("nothing of this run asks for the option" + unknown);
+  for (const std::string &name : names) // read by objects that solve nothing
+    mark_unread(name);
+}
+
+void warn_of_eigen_options(MPI_Comm comm, const OfflineOptions &options) {
+  std::vector<std::string> names;
+  for (const std::string &name : options.command_line)
+    if (starts_with_any(name, eigen_prefixes())) names.push_back(name);
+  const std::vector<std::string> unread = unread_names(eigen_prefixes());
+  std::vector<int> ignored;
+  for (const std::string &name : names)
+    ignored.push_back(contains(unread, name) ? 1 : 0);
+  over_ranks(comm, MPI_MIN, ignored);
+  for (std::size_t i = 0; i < names.size() && rank_of(comm) == 0; ++i)
+    if (ignored[i] != 0)
+      std::printf("warning: -%s has no effect here: no such object was needed\n",
+                  names[i].c_str());
 }
 
 } // namespace rbvi

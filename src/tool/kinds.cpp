@@ -97,8 +97,10 @@ Option described(const SceneOption &option) {
 
 Option described(const Parameter &parameter) {
   const std::string unit = parameter.unit.empty() ? "" : " (" + parameter.unit + ")";
-  return {parameter.name, OptionKind::number, "parameter" + unit + ": bounds a,b or a fixed value",
-          describe(parameter.valid),
+  const std::string how = find_option(parameter.name) == nullptr
+                              ? ": bounds a,b or a fixed value"
+                              : ": by -mu " + parameter.name + "=VALUE";
+  return {parameter.name, OptionKind::number, "parameter" + unit + how, describe(parameter.valid),
           parameter.lower < parameter.upper
               ? short_number(parameter.lower) + "," + short_number(parameter.upper)
               : short_number(parameter.value)};

@@ -221,6 +221,7 @@ void command_offline(const OfflineOptions &options) {
                   {options.out / "model.h5", fields_file(options.out / "model.h5"),
                    options.out / "samples.csv", case_of_run(options.out), options.out / "samples"});
   }
+  warn_of_eigen_options(world, options);
   report_failures(options.scene.parameters, run.sweep.report, training.size(), "training",
                   "the model is made from the others, and answers next to a failed one with a "
                   "warning");

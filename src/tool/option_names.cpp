@@ -55,6 +55,14 @@ Error unknown_option(const std::string &name, const std::string &where,
 
 } // namespace
 
+std::vector<std::string> taken_names() {
+  std::vector<std::string> names{"h", "help", "v", "version"};
+  names.insert(names.end(), petsc_names.begin(), petsc_names.end());
+  for (const Option &option : tool_options())
+    if (option.name != "mu") names.push_back(option.name);
+  return names;
+}
+
 const std::vector<SolverPrefix> &solver_objects() {
   static const std::vector<SolverPrefix> all{
       {"hf_", {"ksp_", "pc_", "mat_"}, "the stiffness A, but for Nitsche's method"},

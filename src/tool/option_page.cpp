@@ -94,7 +94,12 @@ term decides what becomes of it: where the domain does not move, or moves by a s
 term that separates into functions of parameters and of the point is exact; every other one is
 interpolated. A parameter without a range is a constant, which a run may change (`-young 20`) or free
 (`-young 10,30`). With `units:` a number may have a unit, and becomes one of that system: `205 GPa`;
-also behind the name of a parameter, `-young '1 GPa,2 GPa'`.
+also behind the name of a parameter, `-young '1 GPa,2 GPa'`. Numbers of a parameter without a unit are
+in its `unit:`, in the file and in options, tables, queries and answers; expressions see its value in
+the units of the case. Dimensions are checked as far as they are known. A parameter has a name of its
+own: neither that of an option of rbvi nor a column of its tables nor a word of expressions (`pi`). `mu`
+alone is allowed, as coefficients of friction go by it: `-mu` is the point, and `-mu mu=0.3` the
+parameter there; it has no option.
 
 **A path** such as `contact.support.friction` leads to a value. `-set mesh.edges=200` puts one there;
 `choices:` are options of the case whose alternatives do; a variant (`-variant NAME`) does so before all
@@ -121,6 +126,7 @@ constexpr const char *of_petsc = R"(
 The solvers of PETSc and SLEPc take their own options behind these prefixes: `-hf_pc_type`,
 `-nitsche_snes_monitor`, `-pga_eps_view`, ... An option is refused if a solver would read it and not
 follow it, or if nothing in the run reads it. A case file may hold SLEPc's options of another command.
+Which of SLEPc's objects are needed is known in the end: a warning names options of the others.
 )";
 
 constexpr const char *of_petsc_more = R"(

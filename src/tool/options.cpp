@@ -24,7 +24,8 @@ namespace {
 Scene given_scene(const SceneEntry &entry) {
   SceneOptions options;
   for (const SceneOption &option : entry.options)
-    if (is_given(option.name)) options[option.name] = text_of(option.name);
+    if (find_option(option.name) == nullptr && is_given(option.name))
+      options[option.name] = text_of(option.name);
   return make_scene(entry, options);
 }
 
@@ -32,7 +33,8 @@ enum class Given { nothing, value, bounds };
 
 /// "-radius 0.2" fixes a parameter, "-radius 0.18,0.22" frees it between bounds.
 Given adapt_parameter(Parameter &parameter, const std::optional<UnitSystem> &units) {
-  const std::string text = text_of(parameter.name);
+  const bool has_option = find_option(parameter.name) == nullptr;
+  const std::string text = has_option ? text_of(parameter.name) : "";
   const std::vector<std::string> parts = split(text, ',');
   const std::string what = "option -" + parameter.name;
   const auto number = [&](const std::string &part) {

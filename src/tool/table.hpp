@@ -58,8 +58,13 @@ const std::vector<Command> &commands();
 /// Whether it is for that command.
 bool serves(const Option &option, const std::string &command);
 
-/// The one of this name; null: there is none.
+/// The one of this name; null: there is none. A parameter of such a name (mu alone, see
+/// taken_names) has no option of its own: -mu mu=VALUE.
 const Option *find_option(const std::string &name);
+
+/// Names of options that parameters and choices of a case do not have: all but mu, by which
+/// coefficients of friction go.
+std::vector<std::string> taken_names();
 
 /// An option of a scene, and a parameter, by the same type.
 Option described(const SceneOption &option);

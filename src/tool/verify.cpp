@@ -276,6 +276,7 @@ void command_verify(const MeasureOptions &given) {
       tell_of_samples(problem.scene(), problem.contact(), *samples, std::cout);
     print_written(std::cout, {out, options.out / "model.h5"});
   }
+  warn_of_eigen_options(world, options);
   report_failures(options.scene.parameters, sweep.report, validation.size(), "validation",
                   "measured over the others");
 }

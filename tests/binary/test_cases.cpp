@@ -284,6 +284,42 @@ TEST_F(Cases, FactsOfItsMeshAndUnits) {
        {"solve -case case.yaml -mu '-150 mm'", "'-150 mm': not a number; give it in m"}});
 }
 
+/// Numbers without a unit are in that of the parameter, to rbvi and to rbvi-online. Parameters may
+/// be called mu, by which coefficients of friction go, but not like other options.
+TEST_F(Cases, ParametersHaveUnitsAndMayBeCalledMu) {
+  spill(
+      "case.yaml",
+      "rbvi: 1\nphysics: plane_strain\nunits: {length: mm, force: N}\n"
+      "mesh: {built_in: one_block, degree: 1}\n"
+      "parameters:\n  depth: {range: [10, 100], default: 50, unit: um}\n"
+      "  mu: {range: [0.1, 0.5], default: 0.3}\n  young: {default: 10 MPa}\n"
+      "materials: {b: {at: all, E: young, nu: 0}}\nimposed: {top: {at: top, ux: 0.2, uy: -depth}}\n"
+      "contact: {floor: {at: contact, against: {plane: {normal: [0, -1], position: 0}}, "
+      "friction: {coulomb: mu}}}\noutputs: {share: {value: mu, point: [0.5, 0.25]}}\n"
+      "train: grid:3,2\n");
+  EXPECT_TRUE(
+      contains(output_of(rbvi(1, "check case.yaml")), "  depth                [10, 100] um\n"));
+  const auto value_of = [](const std::string &text, const std::string &name) {
+    const std::size_t at = text.find("\n" + name + " ");
+    return at == std::string::npos ? std::nan("") : std::stod(text.substr(at + name.size() + 2));
+  };
+  const std::string solve = output_of(rbvi(1, "solve -case case.yaml -mu mu=0.4,depth=60"));
+  EXPECT_NEAR(value_of(solve, "normal_force"), 10 * 0.06 / 0.5, 1e-9);
+  EXPECT_NEAR(value_of(solve, "share"), 0.4, 1e-12);
+  const std::string kilo =
+      "solve -case case.yaml -mu 60,0.4 -young '20000 kPa' -depth '0.01 mm,90'";
+  EXPECT_NEAR(value_of(output_of(rbvi(1, kilo)), "normal_force"), 2.4, 1e-9);
+  output_of(rbvi(1, "offline -case case.yaml -out run"));
+  const std::string query = output_of(rbvi_online("run/model.h5 --mu depth=60,mu=0.4"));
+  EXPECT_NEAR(value_of(query, "normal_force"), 1.2, 1e-8);
+  EXPECT_NEAR(value_of(query, "share"), 0.4, 1e-8);
+  std::string other = slurp("case.yaml");
+  for (std::size_t at = 0; (at = other.find("mu", at)) != std::string::npos; at += 3)
+    other.replace(at, 2, "out");
+  spill("out.yaml", other);
+  expect_all_refused({{"check out.yaml", "out.yaml:6:3: -out is an option of the program"}});
+}
+
 /// The command line, its paths, a variant, choices and the file.
 TEST_F(Cases, WhatARunChangesOfACaseIsKept) {
   const std::string disk =

@@ -90,6 +90,9 @@ TEST_F(Runs, EigenvaluesAndSingularValuesAreSlepcs) {
                                                   map + " -out " + map));
     EXPECT_EQ(contains(out, "EPS Object: (pga_)"), map == "graded") << "b only scales: one SVD";
     EXPECT_EQ(contains(out, "SVD Object: (pga_)"), map == "similarity");
+    EXPECT_TRUE(contains(out, std::string("warning: -pga_") + (map == "graded" ? "svd" : "eps") +
+                                  "_view has no effect here"))
+        << out;
     EXPECT_EQ(contains(out, "type: lapack"), true);
     EXPECT_FALSE(contains(out, "(infsup_)"));
     const std::string checked = output_of(rbvi(2, "verify -out " + map));

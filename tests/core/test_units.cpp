@@ -2,6 +2,8 @@
 
 #include "refuses.hpp"
 
+#include <cmath>
+
 namespace rbvi::units_test {
 namespace {
 
@@ -84,9 +86,27 @@ TEST(Units, HaveNamesInASystem) {
   }
 }
 
+TEST(Units, ConvertAValueThereAndBack) {
+  const UnitSystem mm = unit_system({{"length", "mm"}, {"force", "kN"}});
+  for (const auto &[unit, size] : std::map<std::string, double>{
+           {"um", 1e-3}, {"m", 1e3}, {"GPa", 1}, {"MPa", 1e-3}, {"deg", M_PI / 180}, {"K", 1}}) {
+    EXPECT_DOUBLE_EQ(from_unit(1, unit, mm), size) << unit;
+    EXPECT_DOUBLE_EQ(into_unit(from_unit(0.37, unit, mm), unit, mm), 0.37) << unit;
+  }
+  EXPECT_EQ(from_unit(50, "um", mm), 0.05);
+  EXPECT_EQ(unit_behind("5 um") + unit_behind("-3e-2MPa") + unit_behind("+1 N/mm^2"),
+            "umMPaN/mm^2");
+  for (const char *text : {"5", "2*pi", "um", "3 - 1", "1/3", "5 foo", ""})
+    EXPECT_EQ(unit_behind(text), "") << text;
+}
+
 TEST(Units, OfWhatARunGives) {
   const UnitSystem mm = unit_system({{"length", "mm"}, {"force", "N"}});
   EXPECT_EQ(parse_given("2 GPa", mm, "MPa", "option -young"), 2000);
+  EXPECT_EQ(parse_given("2 MPa", mm, "GPa", "option -young"), 0.002);
+  EXPECT_EQ(parse_given("2", mm, "GPa", "option -young"), 2) << "in the unit of the parameter";
+  EXPECT_EQ(parse_given("35 um", mm, "um", "option -depth"), 35);
+  EXPECT_NEAR(parse_given("0.5 rad", mm, "deg", "option -tilt"), 90 / M_PI, 1e-14);
   EXPECT_EQ(parse_given("+2GPa", mm, "", "option -young"), 2000);
   EXPECT_EQ(parse_given(" 1e-3", std::nullopt, "MPa", "option -young"), 1e-3);
   const auto refused = [&](const std::string &text, const std::optional<UnitSystem> &system,

@@ -1,5 +1,7 @@
 // Dof numbering and COO assembly: against closed forms, at any number of ranks.
 #include "rbvi/core/error.hpp"
+#include "rbvi/element/facets.hpp"
+#include "rbvi/element/geometry.hpp"
 #include "rbvi/fem/assembly.hpp"
 #include "tests/catalogue.hpp"
 
@@ -73,6 +75,39 @@ TEST(Assembly, H1ProductConvergesToTheIntegral) {
   assemble(forms_of(m.scene.v_product), {}, m.mesh, m.dofs, {}, v.get());
   const double exact = 1.0 / 900 + 2.0 / 90;
   EXPECT_NEAR(quadratic(m, v.get(), bubble, bubble), exact, 2e-3 * exact);
+}
+
+/// The contact arc of a half-disk is a part of its arc, the core one of the body.
+TEST(Assembly, WhatPartsOfAListShareCountsOnce) {
+  const Scene scene = make_scene("rigid_disk");
+  const Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {});
+  const Dofs dofs = number_dofs(mesh, 2, {});
+  const auto sum_over = [&](const std::vector<Form> &parts) {
+    double sum = 0;
+    for (const Form &part : parts)
+      for (const auto &[cell, facet] : places_of(mesh, part)) {
+        const Cell whole = cell_of(mesh, cell);
+        sum += facet < 0 ? volume_of(2, whole.reference)
+                         : norm(facet_cell(whole, facet).reference[1] -
+                                facet_cell(whole, facet).reference[0]);
+      }
+    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, mesh.comm);
+    return sum;
+  };
+  const Form arc{"", {}, "arc"}, contact{"", {}, "contact"}, all{"", {}}, core{"core", {}};
+  const auto less = [](Form form, const std::vector<std::string> &others) {
+    form.without = others;
+    return form;
+  };
+  const double whole = sum_over({arc}), area = sum_over({all});
+  EXPECT_NEAR(whole, M_PI, 1e-3);
+  EXPECT_NEAR(area, M_PI / 2, 1e-3);
+  EXPECT_GT(sum_over({contact}), 0.7);
+  EXPECT_GT(sum_over({core}), 0.5);
+  EXPECT_NEAR(sum_over({contact, less(arc, {"contact"})}), whole, 1e-13);
+  EXPECT_NEAR(sum_over({arc, less(contact, {"arc"})}), whole, 1e-13);
+  EXPECT_NEAR(sum_over({core, less(all, {"core"})}), area, 1e-13);
+  EXPECT_NEAR(sum_over({all, less(core, {""})}), area, 1e-13);
 }
 
 TEST(Assembly, ASecondFillOverwritesTheFirst) {

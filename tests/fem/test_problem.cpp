@@ -23,6 +23,28 @@ TEST(Problem, TheSimilarityScalesBAndG) {
   EXPECT_LT((other.g - scale * reference.g).norm(), 1e-13 * reference.g.norm());
 }
 
+/// V's product is (u, v) + L^2 (grad u, grad v): L is what the scene says, or the size of the body,
+/// of two blocks the height 1.5. The field is x, whose gradient is 1 on an area of 1.
+TEST(Problem, VHasTheLengthOfTheBody) {
+  const auto square_of = [](double length) {
+    Scene scene = make_scene("patch");
+    EXPECT_EQ(scene.v_length, 0);
+    scene.v_length = length;
+    const Problem problem(PETSC_COMM_WORLD, scene, {});
+    const Mesh &mesh = problem.mesh();
+    Vector field = Vector::Zero(2 * std::ssize(mesh.points));
+    for (std::size_t node = 0; node < mesh.points.size(); ++node)
+      field[2 * node] = mesh.points[node][0];
+    double square = field.dot(
+        product_with(forms_of(problem.scene().v_product), {}, mesh, problem.dofs(), {}, field));
+    MPI_Allreduce(MPI_IN_PLACE, &square, 1, MPI_DOUBLE, MPI_SUM, mesh.comm);
+    return square;
+  };
+  EXPECT_NEAR(square_of(0), 1.0 / 3 + 1.5 * 1.5, 1e-12);
+  EXPECT_NEAR(square_of(1), 1.0 / 3 + 1, 1e-12) << "as the scene has it";
+  EXPECT_EQ(make_scene("two_disks").v_length, 1);
+}
+
 TEST(Problem, TheGradedMapDoesNotScaleB) {
   Problem problem(PETSC_COMM_WORLD, make_scene("membrane_obstacle", {{"disc_map", "graded"}}), {});
   Operators reference, other;

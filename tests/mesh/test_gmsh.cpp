@@ -53,6 +53,28 @@ INSTANTIATE_TEST_SUITE_P(Gmsh, Encodings, testing::ValuesIn(gmsh_encodings),
                            return name + (encoding.param.binary ? "_binary" : "_text");
                          });
 
+/// Names belong to a dimension: the curves around the disk are called as the disk.
+TEST(Gmsh, ARegionAndABoundaryMayHaveOneName) {
+  GmshDrawing drawing = membrane();
+  for (GmshEntity &entity : drawing.entities)
+    if (entity.dim == 1 && entity.number == 5) entity.groups = {2};
+  const TemporaryFile file(written(drawing, {"4.1", false}));
+  Scene scene = make_scene("membrane_obstacle", {{"lumped", "no"}});
+  scene.mesh.boundaries.emplace_back("obstacle");
+  for (int refine = 0; refine < 2; ++refine) {
+    const Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {file.name(), refine});
+    std::array<long, 2> count{std::ranges::count(mesh.region.at("obstacle"), true), 0};
+    for (std::size_t node = 0; node < mesh.points.size(); ++node) {
+      const double radius = std::hypot(mesh.points[node][0], mesh.points[node][1]);
+      EXPECT_EQ(mesh.boundary.at("obstacle")[node], std::abs(radius - 0.2) < 2e-3);
+      count[1] += mesh.owned_node[node] && mesh.boundary.at("obstacle")[node];
+    }
+    MPI_Allreduce(MPI_IN_PLACE, count.data(), 2, MPI_LONG, MPI_SUM, mesh.comm);
+    EXPECT_EQ(count[0], (refine == 0 ? 1 : 4) * 864);
+    EXPECT_EQ(count[1], (refine == 0 ? 1 : 2) * 72);
+  }
+}
+
 TEST_P(Encodings, TheBuiltInMeshComesBack) {
   const TemporaryFile file(written(membrane(), GetParam()));
   const SerialMesh built = square_with_disc(), read = read_gmsh(file.name(), scene);

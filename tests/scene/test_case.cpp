@@ -224,9 +224,64 @@ TEST(Case, UnitsAreThoseOfTheSystem) {
   const Scene scene = scene_of({{"units", "{length: mm, force: N}"},
                                 {"parameters", "{depth: {range: [10 um, 1 mm], default: 0.05 cm}}"},
                                 {"materials", "{steel: {at: all, E: 205 GPa, nu: 0.25}}"}});
-  EXPECT_NEAR(scene.parameters.all[0].lower, 0.01, 1e-17);
-  EXPECT_NEAR(scene.parameters.all[0].value, 0.5, 1e-15);
+  EXPECT_EQ(scene.parameters.all[0].unit, "cm") << "that of the default";
+  EXPECT_NEAR(scene.parameters.all[0].lower, 0.001, 1e-18);
+  EXPECT_EQ(scene.parameters.all[0].value, 0.05);
+  EXPECT_NEAR(scene.motion({0.05}, {})[1], -0.5, 1e-16);
   EXPECT_NEAR(scene.materials[0].of_cell({0.5}, {}).shear, 205000 / 2.5, 1e-9);
+}
+
+/// A block whose parameters are in other units than the case.
+const std::map<std::string, std::string> in_units{
+    {"units", "{length: mm, force: N}"},
+    {"parameters", "{depth: {range: [10, 100], default: 0.05 mm, unit: um, limits: [1, 1 mm]}, "
+                   "young: {range: [1 GPa, 20 GPa], default: 2 GPa}, "
+                   "tilt: {range: [-10, 10], default: 1, unit: deg}, "
+                   "thickness: {default: 500 um, limits: [100, 2*0.5 mm]}}"},
+    {"let", "{half: thickness/2}"},
+    {"map", "[x, y*(1 + half)]"},
+    {"materials", "{rubber: {at: all, E: young, nu: 0.25}}"},
+    {"contact", "{floor: {at: contact, against: {plane: {normal: [0, -1], position: 0, "
+                "tilt: tilt}}}}"},
+    {"require", "{deep: {that: depth < 0.08, says: 'a depth of {depth} mm'}}"},
+    {"tests", "{known: {at: {depth: 60, tilt: 0.01 rad}, expect: {energy: 1}, tolerance: 1}}"}};
+
+/// Values are in the units of parameters, what functions see of them is in those of the case.
+TEST(Case, ParametersAreInTheirUnits) {
+  const Scene scene = scene_of(in_units);
+  const std::vector<Parameter> &all = scene.parameters.all;
+  ASSERT_EQ(names_in(scene), (Names{"depth", "young", "tilt"}));
+  EXPECT_EQ(all[0].unit + " " + all[1].unit + " " + all[2].unit, "um GPa deg");
+  EXPECT_EQ(std::vector({all[0].lower, all[0].value, all[0].upper, all[0].valid.lower}),
+            (std::vector<double>{10, 50, 100, 1}));
+  EXPECT_EQ(all[0].valid.upper, 1000);
+  EXPECT_EQ(all[1].lower, 1);
+  EXPECT_NEAR(all[1].valid.lower, 1e-9, 1e-24) << "of a modulus 1e-6 MPa";
+  const FullMu mu{50, 2, 1};
+  EXPECT_EQ(scene.motion(mu, {0, 1, 0})[1], -0.05);
+  EXPECT_NEAR(scene.materials[0].of_cell(mu, {}).shear, 2000 / 2.5, 1e-12);
+  EXPECT_NEAR(scene.map(mu, {1, 1, 0})[1], 1.25, 1e-15);
+  ASSERT_TRUE(scene.a.front().form.kernel);
+  EXPECT_NO_THROW(scene.check_parameters(mu));
+  EXPECT_THROW(scene.check_parameters({90, 2, 1}), Error) << "0.09 mm are not less than 0.08";
+  EXPECT_EQ(scene.tests.at(0).at.at("depth"), 60);
+  EXPECT_NEAR(scene.tests.at(0).at.at("tilt"), 0.01 * 180 / M_PI, 1e-15);
+}
+
+/// What a run, a choice or a variant gives without a unit is in that of the parameter, too.
+TEST(Case, ValuesInPlaceOfOthersKeepTheUnit) {
+  const auto map_of = [](const SceneOptions &options, const CaseChanges &changes = {}) {
+    std::map<std::string, std::string> other = in_units;
+    other["variants"] = "{thick: {parameters.thickness.default: 800}}";
+    return make_scene(entry_in(other, changes), options).map({50, 2, 1, 300}, {1, 1, 0})[1];
+  };
+  EXPECT_NEAR(map_of({{"thickness", "800"}}), 1.4, 1e-15);
+  EXPECT_NEAR(map_of({{"thickness", "0.8 mm"}}), 1.4, 1e-15);
+  EXPECT_NEAR(map_of({{"thickness", "200,0.9 mm"}}), 1.15, 1e-15);
+  EXPECT_NEAR(map_of({}, {"thick", {}}), 1.4, 1e-15);
+  EXPECT_NEAR(map_of({}, {"", {{"parameters.thickness.default", "800"}}}), 1.4, 1e-15);
+  EXPECT_THROW(map_of({{"thickness", "1100"}}), Error);
+  EXPECT_THROW(map_of({{"thickness", "0.8"}}), Error) << "0.8 um";
 }
 
 const std::map<std::string, std::string> chosen{
@@ -342,6 +397,23 @@ TEST(Case, NamesOfContactAreKept) {
   const Scene roller = make_scene("roller");
   EXPECT_EQ(contact_name(roller, 1), "lower plate");
   EXPECT_EQ(described(roller.contacts[0]), "contact 'upper plate' on 'top'");
+}
+
+/// The page of choices: without vertex quadrature the peak overshoots at any mesh.
+TEST(Case, AnObstacleHasVertexQuadratureUnlessTheCaseSaysNo) {
+  const auto lumped = [](const std::string &more) {
+    return scene_of({{"physics", "membrane"},
+                     {"mesh", "{built_in: square_with_disc}"},
+                     {"materials", ""},
+                     {"parameters", "{depth: {range: [0.01, 0.1], default: 0.05}}"},
+                     {"imposed", "{frame: {at: boundary, u: 0}}"},
+                     {"contact", "{o: {at: obstacle, above: -depth" + more + "}}"}})
+        .contacts.front()
+        .nodal;
+  };
+  EXPECT_TRUE(lumped(""));
+  EXPECT_TRUE(lumped(", lumped: yes"));
+  EXPECT_FALSE(lumped(", lumped: no"));
 }
 
 TEST(Case, ParametersThatNothingUsesAreLeftOut) {

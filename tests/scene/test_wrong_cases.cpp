@@ -185,6 +185,97 @@ TEST(WrongCase, Parameters) {
   });
 }
 
+TEST(WrongCase, Units) {
+  const auto with = [](Sections other, const std::string &unit = "mm") {
+    other.insert(
+        {{"units", "{length: mm, force: N}"},
+         {"parameters", "{depth: {range: [0.01, 0.1], default: 0.05, unit: " + unit + "}}"},
+         {"materials", "{rubber: {at: all, E: 15 MPa, nu: 0.3}}"}});
+    return other;
+  };
+  const auto load = [&](const std::string &text) {
+    return with({{"loads", "{l: {" + text + "}}"}});
+  };
+  const auto spring = [&](const std::string &text) {
+    return with({{"imposed", "{top: {at: top, uy: -depth}, sides: {at: sides, ux: 0}}"},
+                 {"springs", "{s: {at: sides, " + text + "}}"}});
+  };
+  const auto turned = [&](Sections sections) {
+    sections["physics"] = "axisymmetric";
+    return sections;
+  };
+  for (const Sections &right :
+       {with({}), with({}, "um"), load("at: all, force: [0, -1 N/mm^3]"),
+        load("at: sides, traction: [0, 1 MPa]"), load("at: sides, pressure: 3 * depth"),
+        spring("stiffness: 100 MPa, pretension: 1 N/mm, settled: depth - 2"),
+        turned(spring("stiffness: 100 N/mm, pretension: 1 kN")),
+        with({{"imposed",
+               "{top: {at: top, ux: 0, uy: -depth}, sides: {at: sides, force_x: 1 N/mm}}"}}),
+        with({{"let", "{area: depth*x + 3 * y^2, ratio: depth/x, mean: sqrt(x*depth)}"},
+              {"outputs", "{far: {integral: pressure*x, where: x > depth and gap < mean}}"}})})
+    EXPECT_EQ(said(block_case(right)), "") << block_case(right);
+  const std::string thin = "in plane problems forces are per thickness: ";
+  expect_refused({
+      {with({}, "MPa"), "a length is wanted, -depth is a stress"},
+      {with({}, "foot"), "unknown unit 'foot'"},
+      {with({{"let", "{deep: 2 N}"}, {"imposed", "{top: {at: top, ux: 0, uy: -depth - deep}}"}}),
+       "'-depth - deep' adds or compares a length and a force"},
+      {with({{"let", "{a: depth^2}"}, {"imposed", "{top: {at: top, ux: 0, uy: a/depth + a}}"}}),
+       "adds or compares a length and an area"},
+      {with({{"outputs", "{part: {measure: pressure > depth}}"}}), "a stress and a length"},
+      {with({{"require", "{r: {that: depth < 2 and depth^2 > depth, says: no}}"}}), "an area"},
+      {load("at: all, force: [0, -1 K]"), "a force per volume is wanted, -1 K is a temperature"},
+      {load("at: all, force: [0, -1 s]"), "a force per volume is wanted, -1 s is a time"},
+      {load("at: all, force: [0, -1 MPa]"), "a force per volume"},
+      {load("at: sides, pressure: depth"), "a stress is wanted, depth is a length"},
+      {spring("stiffness: 1 N/mm"), thin + "a stress is wanted"},
+      {spring("pretension: 1 N"), thin + "a stiffness or a force per length is wanted, 1 N is"},
+      {turned(spring("stiffness: 1 MPa")), "a stiffness or a force per length is wanted"},
+      {with({{"imposed", "{top: {at: top, ux: 0, force_y: 3 N}}"}}), thin},
+      {with({{"contact", "{f: {at: contact, against: {plane: {normal: [0, -1], position: 0, "
+                         "tilt: depth}}}}"}}),
+       "a number without dimension is wanted, depth is a length"},
+      {with({{"map", "[x, y*depth]"}}), "a length is wanted, y*depth is an area"},
+      {with({{"parameters", "{depth: {range: [0.01 N, 0.1], default: 0.05, unit: mm}}"}}),
+       "a length is wanted, 0.01 N is a force"},
+      {{{"parameters", "{depth: {range: [0.01, 0.1], default: 0.05, unit: m}, k: {range: [1, 2], "
+                       "default: 1}, nu: {default: 0.3}, young: {default: 15, unit: mm}}"}},
+       "mm and m are of none: write units:"},
+      {{{"parameters", "{depth: {range: [0.01, 0.1], default: 0.05, unit: deg}, k: {range: [1, 2], "
+                       "default: 1}, nu: {default: 0.3}, young: {default: 15}}"}},
+       "deg and radians are of none: write units:"},
+  });
+}
+
+/// Names that mean something else in expressions, tables or options.
+TEST(WrongCase, Names) {
+  const auto named = [](const std::string &name) {
+    return Sections{{"parameters", "{" + name + ": {range: [0.01, 0.1], default: 0.05}}"},
+                    {"materials", "{rubber: {at: all, E: 15, nu: 0.3}}"},
+                    {"imposed", "{top: {at: top, ux: 0, uy: '-(" + name + ")'}}"}};
+  };
+  for (const std::string right : {"depth", "mu", "pressure", "pi_2", "energies", "_a"})
+    EXPECT_EQ(said(block_case(named(right))), "") << right;
+  for (const std::string wrong : {"pi", "sin", "max", "and", "not", "e-mod", "'a b'", "2nd", "a.b"})
+    expect_refused({{named(wrong), "is no name that an expression can have"}});
+  for (const std::string column :
+       {"energy", "normal_force", "status", "id", "seconds", "energy_error", "u_enriched"})
+    expect_refused({{named(column), "tables have a column '" + column + "' already"}});
+  expect_refused({
+      {named("nx"), "'nx' is the name of a coordinate"},
+      {{{"let", "{pi: 3}"}}, "'pi' is no name"},
+      {{{"outputs", "{a: {max: gap}, a_error: {max: gap}}"}}, "a column 'a_error' already"},
+      {{{"outputs", "{a_error: {max: gap}, a: {max: gap}}"}}, "a column 'a' already"},
+      {{{"outputs", "{status: {max: gap}}"}}, "a column 'status' already"},
+  });
+  CaseChanges changes;
+  changes.taken = {"out", "threads"};
+  for (const std::string text : {"{out: {default: a, a: {}}}", "{threads: {sets: mesh.edges}}"})
+    EXPECT_THROW((void)read_case(block_case({{"choices", text}}), "x.yaml", changes), Error);
+  EXPECT_THROW((void)read_case(block_case(named("out")), "x.yaml", changes), Error);
+  EXPECT_NO_THROW((void)read_case(block_case(named("mu")), "x.yaml", changes));
+}
+
 TEST(WrongCase, BodiesAndContact) {
   const auto floor = [](const std::string &text) {
     return Sections{{"contact", "{floor: {at: contact, " + text + "}}"}};

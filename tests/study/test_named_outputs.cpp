@@ -349,6 +349,37 @@ TEST(NamedOutputs, OfATurnedBodyAreOfTheWholeCircumference) {
   });
 }
 
+/// Loads, materials and outputs of overlapping parts are those of the whole.
+TEST(NamedOutputs, OfOverlappingPartsCountThemOnce) {
+  const auto answer = [](const std::string &body, const std::string &arc) {
+    const Scene scene = make_scene(
+        read_case("rbvi: 1\nphysics: plane_strain\nmesh: {built_in: half_disc, degree: 1}\n"
+                  "parameters: {p: {range: [0.01, 0.02], default: 0.01}}\n"
+                  "materials: {rubber: {at: " +
+                      body + ", E: 15, nu: 0.3}}\nimposed: {top: {at: top, ux: 0, uy: 0}}\n" +
+                      "loads: {weight: {at: " + body + ", force: [0, -p]}, sides: {at: " + arc +
+                      ", pressure: p}}\ncontact: {floor: {at: contact, against: {plane: {normal: "
+                      "[0, -1], position: 0.99}}}}\noutputs: {length: {integral: 1, at: " +
+                      arc + "}, height: {mean: y, in: " + body +
+                      "}, push: {integral: pressure, "
+                      "at: [floor, floor]}, depth: {min: uy, at: " +
+                      arc + "}}\n",
+                  "disk.yaml"),
+        {});
+    Problem problem(PETSC_COMM_WORLD, scene, {});
+    Outputs outputs = HighFidelity(problem, {}).solve({0.015}).outputs;
+    std::map<std::string, double> values = values_of(outputs);
+    values["energy"] = outputs.energy.value();
+    return values;
+  };
+  const auto whole = answer("all", "arc");
+  EXPECT_NEAR(whole.at("length"), M_PI, 1e-3);
+  for (const auto &[body, arc] : std::map<std::string, std::string>{
+           {"[core, all]", "[contact, arc]"}, {"[all, core]", "[arc, contact, arc]"}})
+    for (const auto &[name, value] : answer(body, arc))
+      EXPECT_NEAR(value, whole.at(name), 1e-9 * std::abs(whole.at(name))) << name << body << arc;
+}
+
 TEST(NamedOutputs, AreRefusedWhereTheyAreNotKnown) {
   const std::string hold = "imposed: {top: {at: top, ux: 0, uy: -d}, sides: {at: sides, ux: 0}}\n";
   const auto expect_refused = [&](const std::string &output, const std::string &words) {

@@ -35,5 +35,14 @@ TEST(SamplesOfASweep, AreToldOfWhereSomeTakeLoadStepsOrTouchAnEnd) {
   EXPECT_EQ(told({small}), "") << "of small deformations there is none";
 }
 
+TEST(Table, AParameterMayBeCalledLikeAColumn) {
+  Table table;
+  table.add(all_free({{"pressure", "MPa", 0, 2, 1}, {"x_", "", 0, 1, 0}}), {{1, 0}});
+  table.add("interface", std::vector{1.0});
+  table.add("pressure", std::vector{3.0});
+  EXPECT_EQ(table.names, (std::vector<std::string>{"mu_pressure", "x_", "interface", "pressure"}));
+  EXPECT_EQ(table.columns[0].front(), 1);
+}
+
 } // namespace
 } // namespace rbvi::tables_test

@@ -25,6 +25,7 @@ struct SceneOption {
   Range valid{};                    ///< of a number
   bool built_in_mesh = false;       ///< without meaning for a mesh from a file
   bool may_vary = false;            ///< "10,20" makes it a parameter with these bounds
+  std::string unit{};               ///< of a number without one; "": that of the case
 };
 
 /// What a part of the mesh must be for the mesh to be the scene's, whoever made it.
@@ -183,6 +184,8 @@ struct Scene {
   Sum a;         ///< symmetric
   Sum f;         ///< empty: no load
   Sum v_product; ///< inner product of V, exact terms; mu is empty there
+  /// 0: v_product becomes h1_product_of the size of the body, which the mesh says.
+  double v_length = 1;
 
   std::vector<OutputForm> outputs{};
   std::vector<SceneTest> tests{};

@@ -35,6 +35,9 @@ struct Form {
   /// Not empty: no integral of a kernel but, with the sum m of these means, m(u) m(v) of a bilinear
   /// form, m(v) of a linear one. Of exact terms alone.
   std::vector<Mean> means = {};
+  /// Not of the cells of these regions, or the facets of these boundaries ("": of any): other terms
+  /// have them.
+  std::vector<std::string> without = {};
   explicit operator bool() const { return kernel || !means.empty(); }
 };
 

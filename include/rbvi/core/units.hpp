@@ -29,9 +29,11 @@ struct Quantity {
 /// bad_input.
 UnitSystem unit_system(const std::map<std::string, std::string> &declared);
 
-/// A finite number, with a unit behind it or without one: then the value is as it is. Throws
+/// A finite number, with a unit behind it or without one: then the value is as it is. Where a unit
+/// is wanted ("": that of the system) the value is in that, and so must be the dimension. Throws
 /// bad_input, also for a unit where no system is declared.
-Quantity parse_quantity(const std::string &text, const std::optional<UnitSystem> &system);
+Quantity parse_quantity(const std::string &text, const std::optional<UnitSystem> &system,
+                        const std::string &wanted = "");
 
 /// The dimension of a product of units: "N/mm^2". Throws bad_input.
 Dimension dimension_of(const std::string &unit);
@@ -45,9 +47,17 @@ std::string described(const Dimension &dimension);
 /// Throws bad_input if a quantity, written as `text`, has a unit of another dimension.
 void check_dimension(const Quantity &quantity, const Dimension &wanted, const std::string &text);
 
-/// A number that a run gives, with a unit of the dimension of `unit` ("": any) or without one.
-/// Throws bad_input, which calls it `what`.
+/// A number that a run gives, without a unit in `unit` ("": in that of the system), or with one of
+/// its dimension: then it becomes one in `unit`. Without a system units are labels. Throws
+/// bad_input, which calls it `what`.
 double parse_given(const std::string &text, const std::optional<UnitSystem> &system,
                    const std::string &unit, const std::string &what);
+
+/// A value in `unit` as one of the system, and back. Throws bad_input for an unknown unit.
+double from_unit(double value, const std::string &unit, const UnitSystem &system);
+double into_unit(double value, const std::string &unit, const UnitSystem &system);
+
+/// The unit that is written behind a number; "" of one without, and of other texts.
+std::string unit_behind(const std::string &text);
 
 } // namespace rbvi

@@ -17,6 +17,9 @@ Form axisymmetric_elasticity(const std::string &region, const Named<Material> &m
 /// the gradient. Throws likewise.
 Form axisymmetric_h1_product(double length, int degree);
 
+/// The product of V of this length (2.44), of a body of the plane or one that is turned.
+Sum h1_product_of(const Scene &scene, double length);
+
 /// The makers of these kernels.
 FunctionLibrary axisymmetric_functions();
 

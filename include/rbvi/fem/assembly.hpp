@@ -23,6 +23,9 @@ Cell cell_of(const Mesh &mesh, std::size_t cell, const MappedVertices &mapped = 
 std::vector<int> imposed_on(const Mesh &mesh, const Dofs &dofs, std::size_t cell,
                             const std::vector<int> &local);
 
+/// Cells of this rank that a form without means is over, with the facet -1, or the facets.
+std::vector<CellFacet> places_of(const Mesh &mesh, const Form &form);
+
 /// A multiple of a form.
 struct WeightedForm {
   const Form *form;

@@ -12,6 +12,8 @@ struct CaseChanges {
   std::string variant = ""; ///< one of `variants:`
   /// "mesh.edges" -> "200": values at paths of the file.
   std::vector<std::pair<std::string, std::string>> values{};
+  /// Names that parameters and choices do not have: those of options of the program.
+  std::vector<std::string> taken{};
 };
 
 /// Whether the text is that of a case, with sections of a scene. Throws bad_input for

@@ -103,6 +103,9 @@ enum class EigenUse {
 /// Throws bad_input if one of their options was given that nothing of the run asks for, or whose
 /// value SLEPc refuses. Those of another command may stand in a case file, not on the command line.
 void check_eigen_options(const OfflineOptions &options, EigenUse use);
+/// At the end of a run: a warning for each of the command line that nothing has asked for on the
+/// way that the run took. Collective.
+void warn_of_eigen_options(MPI_Comm comm, const OfflineOptions &options);
 
 /// Prints the usage, the options above and those of the scenes; or, where one is named, options,
 /// parameters and mesh of that scene alone; or, of a command, its usage and its options alone.

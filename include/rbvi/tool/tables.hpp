@@ -3,6 +3,7 @@
 
 #include "rbvi/sweep/sweep.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <ostream>
 #include <string>
@@ -20,7 +21,10 @@ struct Table {
   std::vector<std::string> names;
   std::vector<std::vector<double>> columns;
 
+  /// A parameter that is called like this column becomes mu_NAME, as in pictures.
   template <class Values> void add(const std::string &name, const Values &values) {
+    const auto same = std::ranges::find(names, name);
+    if (same != names.end()) *same = "mu_" + name;
     names.push_back(name);
     columns.emplace_back(values.begin(), values.end());
   }
