@@ -237,7 +237,7 @@ const std::map<std::string, std::string> in_units{
     {"parameters", "{depth: {range: [10, 100], default: 0.05 mm, unit: um, limits: [1, 1 mm]}, "
                    "young: {range: [1 GPa, 20 GPa], default: 2 GPa}, "
                    "tilt: {range: [-10, 10], default: 1, unit: deg}, "
-                   "thickness: {default: 500 um, limits: [100, 2*0.5 mm]}}"},
+                   "thickness: {default: 500 um, limits: [100, 2*500]}}"},
     {"let", "{half: thickness/2}"},
     {"map", "[x, y*(1 + half)]"},
     {"materials", "{rubber: {at: all, E: young, nu: 0.25}}"},
