@@ -149,6 +149,7 @@ std::uint64_t make_mesh(const std::string &geo, const std::map<std::string, doub
                     "' is a geometry, and there is no program gmsh to mesh it: install "
                     "Debian's package gmsh, or give a mesh (.msh)");
   make_directory(folder);
+  remove_stale_temporaries(folder);
   const Geometry geometry(geo, numbers, folder);
   const Scratch part(folder / "part");
   const std::string log = geometry.mesh(part.file),

@@ -29,7 +29,7 @@ std::string in_flow(const std::string &text) {
   return plain && !text.starts_with('-') && text != "null" ? text : in_quotes(text);
 }
 
-/// A boundary of a mesh.
+/// A boundary of a mesh that is all of its surface.
 struct Side {
   std::string name;
   std::set<int> vertices, bodies;
@@ -41,8 +41,9 @@ struct Side {
   }
 };
 
-std::vector<Side> sides_of(const SerialMesh &mesh) {
+std::vector<Side> sides_of(const SerialMesh &mesh, const Scene &scene) {
   const std::vector<int> bodies = bodies_of(mesh);
+  const MeshSurface surface = surface_of(mesh, scene);
   std::vector<Side> sides;
   for (const auto &[name, ignored] : mesh.boundary) {
     Side side{name, {}, {}, {}};
@@ -53,7 +54,8 @@ std::vector<Side> sides_of(const SerialMesh &mesh) {
       side.height += (side.edges.back()[0][1] + side.edges.back()[1][1]) / 2;
     }
     side.height /= static_cast<double>(side.edges.size());
-    sides.push_back(std::move(side));
+    if (std::ranges::count(surface.groups.at(name), true) == std::ssize(side.edges))
+      sides.push_back(std::move(side));
   }
   return sides;
 }
@@ -79,10 +81,10 @@ bool touch(const Side &one, const Side &other, double tolerance) {
 /// that is farthest from it, those above the lowest contact pushed down.
 class CaseOfMesh {
 public:
-  CaseOfMesh(const SerialMesh &mesh, const std::string &file)
-      : extent_(extent_of(mesh)), sides_(sides_of(mesh)) {
+  CaseOfMesh(const SerialMesh &mesh, const Scene &scene, const std::string &file)
+      : extent_(extent_of(mesh)), sides_(sides_of(mesh, scene)) {
     if (sides_.size() < 2)
-      throw bad_input("the mesh " + file + " has " + "too few named boundaries (" +
+      throw bad_input("the mesh " + file + " has too few named boundaries (" +
                       std::to_string(sides_.size()) + ")" +
                       ": a case needs one that is held and one that touches, as physical curves");
     find_contacts(mesh);
@@ -146,12 +148,13 @@ std::string list(const std::vector<std::string> &names) {
 /// A mesh or a geometry as a case in a folder.
 std::string case_of(const std::string &file, const fs::path &folder) {
   Scene scene;
+  scene.name = folder.filename().string();
   scene.dim = 2;
   const std::string mesh_file =
       file.ends_with(".geo") ? meshed(MPI_COMM_SELF, file, {}, folder_of_meshes()) : file;
   const auto [regions, boundaries] = parts_of_gmsh(mesh_file, 2);
   scene.contacts.emplace_back().entities.parts = boundaries; // these may lie on each other
-  const CaseOfMesh made(mesh_with_groups(scene, mesh_file), file);
+  const CaseOfMesh made(mesh_with_groups(scene, mesh_file), scene, file);
   const fs::path beside =
       fs::absolute(file).lexically_normal().lexically_relative(fs::absolute(folder));
   return new_case(in_flow(beside.string()),
