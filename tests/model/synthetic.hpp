@@ -183,7 +183,7 @@ public:
                double least, Outputs &outputs) const override {
     pressure_outputs(Vector::Ones(lambda.size()), operators.weights, lambda, least, outputs);
   }
-  Grid fields(const FullMu &, const Vector &, const Vector &) override { return {}; }
+  Grid fields(const FullMu &, const Vector &, const Vector &, bool) override { return {}; }
 };
 
 /// A scene on the identity map whose forms fill their values from mu alone: value i of form k is
