@@ -6,6 +6,7 @@
 #include "rbvi/element/lagrange.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace rbvi {
 
@@ -251,6 +252,35 @@ SlaveLines slave_lines(const Partners &partners, bool whole) {
     add(e, last, 1, false);
   }
   return lines;
+}
+
+Vector nodal_forces(const Partners &partners, const PairMultipliers &multipliers,
+                    const Vector &lambda) {
+  std::vector<int> all(
+      static_cast<std::size_t>(2 * partners.slave.nodes() + 2 * partners.master.nodes()));
+  std::iota(all.begin(), all.end(), 0);
+  const bool friction = lambda.size() > multipliers.count();
+  return pair_operators(partners, multipliers, all, std::ssize(all), friction).b.transpose() *
+         lambda;
+}
+
+PointForces point_forces(const Partners &partners, const PairMultipliers &multipliers,
+                         const Vector &lambda) {
+  const Index count = multipliers.count();
+  const Vector pressure = lambda.head(count), shear = lambda.tail(lambda.size() - count);
+  const auto on_edge = [](const NodalCurve &curve, Index edge, double s) {
+    return (1 - s) * curve.end(edge, 0) + s * curve.end(edge, 1);
+  };
+  PointForces forces;
+  for (const PairPoint &p : partners.points) {
+    Point force = p.weight * multipliers.sum(pressure, p.slave_edge, p.s) * p.normal;
+    if (shear.size() > 0)
+      force = force - p.weight * multipliers.sum(shear, p.slave_edge, p.s) *
+                          Point{p.normal[1], -p.normal[0], 0};
+    forces.push_back({0, on_edge(partners.slave, p.slave_edge, p.s), force});
+    forces.push_back({1, on_edge(partners.master, p.master_edge, p.t), -1.0 * force});
+  }
+  return forces;
 }
 
 Partners find_partners(NodalCurve slave, NodalCurve master, const PairDiscretisation &how,

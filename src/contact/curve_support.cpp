@@ -65,6 +65,8 @@ public:
   FrictionBound bound(const FullMu &mu) const override { return friction_bound(friction_, mu); }
   PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &,
                                 const Point &displacement) const override;
+  PointForces point_forces(const FullMu &mu, const ContactState &state,
+                           const Vector &lambda) const override;
   void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                double least, Outputs &outputs) const override;
   double gap_error(const FullMu &mu, const Vector &u, const Vector &lambda) const override {
@@ -82,9 +84,6 @@ public:
   NodalEvaluation nodal_at(const FullMu &mu) const override;
 
 private:
-  struct Lift {
-    Vector horizontal, vertical; ///< B e_x and B e_y
-  };
   struct AtRest {
     double measure;
     PlacedPoint point;
@@ -100,8 +99,6 @@ private:
   Point deformed_normal(const FullMu &mu, const Cell &edge, const TracePoint &at,
                         const Point &x) const;
   FacedPoint faced_at(const FullMu &mu, const Cell &edge, const TracePoint &at) const;
-  Lift lift(const FullMu &mu, const ContactState &state, const Matrix &mapped,
-            const Vector &lambda) const;
   double tangential_force(const Matrix &mapped, const Vector &lambda) const;
   void add_edge(const FullMu &mu, Index edge, const std::vector<AtRest> &rest, const Vector &state,
                 const Vector &x, NodalCondition &condition) const;
@@ -196,41 +193,35 @@ void CurveSupport::integrate(const FullMu &mu, const Cell &edge, EntityValues &v
     }
 }
 
-/// The work of multipliers on a unit displacement, B e_x and B e_y, where `lambda` is not zero.
-/// `mapped`: the vertices.
-CurveSupport::Lift CurveSupport::lift(const FullMu &mu, const ContactState &state,
-                                      const Matrix &mapped, const Vector &lambda) const {
-  Lift result{Vector::Zero(dual_.size()), Vector::Zero(dual_.size())};
+/// Of the edges with multipliers that are not zero.
+PointForces CurveSupport::point_forces(const FullMu &mu, const ContactState &state,
+                                       const Vector &lambda) const {
+  PointForces forces;
   std::vector<double> displacement;
   for (Index e = 0; e < mesh_.count(); ++e) {
     const std::span<const int> rows = rows_of(e);
     if (std::ranges::none_of(rows, [&](Index row) { return row >= 0 && lambda[row] != 0; }))
       continue;
-    Cell edge = reference_entity(e);
+    Cell edge = mapped_edge(mu, e);
     if (follows_state()) set_displacement(mu, e, state, edge, displacement);
-    for (Index i = 0; i < 2; ++i) {
-      const int node = mesh_.nodes_of(e)[i];
-      edge.mapped[i] = {mapped(node, 0), mapped(node, 1), 0};
-    }
-    const auto pressure = [&](std::size_t a) { return rows[a] < 0 ? 0 : lambda[rows[a]]; };
+    const auto sum_of = [&](const TracePoint &at, std::size_t first) {
+      double sum = 0;
+      for (std::size_t a = 0; a < 2 && first < rows.size(); ++a)
+        if (rows[first + a] >= 0) sum += at.eta[a] * lambda[rows[first + a]];
+      return sum;
+    };
     for (const TracePoint &at : points_) {
       const Point n = facing_.normal ? facing_.normal(mu, curve_point(facing_, point_on(edge, at)))
                                      : faced_at(mu, edge, at).normal;
+      const double pressure = sum_of(at, 0), shear = sum_of(at, 2);
       // Tresca's traction acts without pressure, too.
-      const bool pressed = at.eta[0] * pressure(0) + at.eta[1] * pressure(1) > 0;
-      if (pressed) check_pressed_side(outwards(edge, n), point_on(edge, at));
-      for (std::size_t a = 0; a < 2; ++a) {
-        if (rows[a] < 0) continue;
-        const double eta = measure(edge, at) * at.eta[a];
-        result.horizontal[rows[a]] += eta * n[0];
-        result.vertical[rows[a]] += eta * n[1];
-        if (dual_.components == 1) continue;
-        result.horizontal[rows[2 + a]] -= eta * n[1];
-        result.vertical[rows[2 + a]] += eta * n[0];
-      }
+      if (pressure > 0) check_pressed_side(outwards(edge, n), point_on(edge, at));
+      const Point traction = pressure * n + shear * Point{-n[1], n[0], 0};
+      forces.push_back({0, at.eta[0] * edge.mapped[0] + at.eta[1] * edge.mapped[1],
+                        -measure(edge, at) * traction});
     }
   }
-  return result;
+  return forces;
 }
 
 double CurveSupport::tangential_force(const Matrix &mapped, const Vector &lambda) const {
@@ -262,11 +253,12 @@ Grid CurveSupport::fields(const FullMu &mu, const Vector &u, const Vector &lambd
 void CurveSupport::outputs(const FullMu &mu, const ContactOperators &operators,
                            const Vector &lambda, double, Outputs &outputs) const {
   const Matrix mapped = mapped_points(scene_, mu, vertices_of(mesh_, shape_));
-  const Lift unit = lift(mu, operators.state, mapped, lambda);
+  Point force{};
+  for (const PointForce &at : point_forces(mu, operators.state, lambda))
+    force = force + at.force;
   const Vector arc = arc_lengths(mapped), s = from_middle(middle_, arc, arc[arc.size() - 1]);
-  support_outputs({lambda, operators.weights, unit.horizontal, unit.vertical, bound(mu),
-                   tangential_force(mapped, lambda), images_, middle_,
-                   s.size() > 0 ? Vector(s(dual_.vertices)) : s},
+  support_outputs({lambda, operators.weights, force, bound(mu), tangential_force(mapped, lambda),
+                   images_, middle_, s.size() > 0 ? Vector(s(dual_.vertices)) : s},
                   outputs);
   if (scene_.axisymmetric) drop_plane_outputs(outputs);
   for (std::size_t k = 0; k < shape_.pieces.size(); ++k) {

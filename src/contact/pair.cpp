@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <optional>
 
 namespace rbvi {
@@ -42,8 +41,12 @@ public:
     return friction_bound(pair_.friction, mu);
   }
   std::vector<Index> partly_fixed() const override;
-  Vector nodal_forces(const FullMu &mu, const ContactState &state,
-                      const Vector &lambda) const override;
+  Vector nodal_forces(const FullMu &mu, const ContactState &at, const Vector &of) const override {
+    return rbvi::nodal_forces(partners(mu, at), multipliers_, of);
+  }
+  PointForces point_forces(const FullMu &mu, const ContactState &at, const Vector &of) const final {
+    return rbvi::point_forces(partners(mu, at), multipliers_, of);
+  }
   void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                double least, Outputs &outputs) const override;
   double gap_error(const FullMu &mu, const Vector &u, const Vector &lambda) const override;
@@ -270,15 +273,6 @@ double PairInterface::gap_error(const FullMu &mu, const Vector &u, const Vector 
   return errors.largest();
 }
 
-Vector PairInterface::nodal_forces(const FullMu &mu, const ContactState &state,
-                                   const Vector &lambda) const {
-  std::vector<int> all(2 * mesh_.points.size());
-  std::iota(all.begin(), all.end(), 0);
-  const PairOperators operators =
-      pair_operators(partners(mu, state), multipliers_, all, std::ssize(all), friction());
-  return operators.b.transpose() * lambda;
-}
-
 /// Of each piece of the slave curve, then whether all of the master curve are.
 std::vector<std::array<bool, 2>> PairInterface::closed_ends() const {
   const std::size_t pieces = slave_->pieces.size();
@@ -295,10 +289,9 @@ void PairInterface::outputs(const FullMu &mu, const ContactOperators &operators,
   const Vector pressure = lambda.head(count);
   const Vector own_images = image_counts(scene_.mirrors, dual_.points);
   pressure_outputs(own_images, operators.weights, pressure, least, outputs);
-  const HatWeights hats =
-      curves(images(scene_.map, mu, mesh_.points)).slave.hats(scene_.axisymmetric);
-  const Vector shares =
-      operators.weights.head(count).cwiseQuotient(multipliers_.whole_weights(hats));
+  const Vector whole = multipliers_.whole_weights(
+      curves(images(scene_.map, mu, mesh_.points)).slave.hats(scene_.axisymmetric));
+  const Vector shares = operators.weights.head(count).cwiseQuotient(whole);
   outputs.ends_in_contact =
       image_count(scene_.mirrors) *
       ends_in_contact(multipliers_, *slave_, shares, pressure, least, closed_ends());
@@ -308,12 +301,8 @@ void PairInterface::outputs(const FullMu &mu, const ContactOperators &operators,
     friction_outputs(own_images, tangential_force(found, multipliers_, lambda.tail(count)),
                      operators.weights, lambda, bound(mu), outputs);
   Point force{}; // on the slave
-  for (const PairPoint &p : found.points) {
-    const Point tau{p.normal[1], -p.normal[0], 0};
-    force = force + p.weight * multipliers_.sum(pressure, p.slave_edge, p.s) * p.normal;
-    if (friction())
-      force = force - p.weight * multipliers_.sum(lambda.tail(count), p.slave_edge, p.s) * tau;
-  }
+  for (const PointForce &at : rbvi::point_forces(found, multipliers_, lambda))
+    if (at.part == 0) force = force + at.force;
   outputs.reaction = force[1];
   outputs.horizontal_reaction = force[0];
   if (scene_.axisymmetric) drop_plane_outputs(outputs);

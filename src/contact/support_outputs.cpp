@@ -92,8 +92,8 @@ void support_outputs(const SupportState &state, Outputs &outputs) {
   const Index count = state.weights.size();
   const Vector pressure = state.lambda.head(count);
   pressure_outputs(state.images, state.weights, pressure, 0, outputs);
-  outputs.reaction = -state.lift.dot(state.lambda);
-  outputs.horizontal_reaction = -state.push.dot(state.lambda);
+  outputs.reaction = state.force[1];
+  outputs.horizontal_reaction = state.force[0];
   outputs.contact_half_width = *outputs.contact_measure / 2;
   if (const bool halved = is_halved(state.middle); state.s.size() > 0)
     outputs.centre_pressure =

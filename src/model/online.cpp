@@ -1,5 +1,6 @@
 #include "rbvi/model/online.hpp"
 
+#include "rbvi/contact/force_balance.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/core/text.hpp"
@@ -173,6 +174,13 @@ void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vec
                      solution.least_pressure * std::max(0.0, lambda.maxCoeff())},
                     lambda, outputs);
   if (faces_surfaces) add_gap_error(scene_, contact_, solution.mu, of_interface, lambda, outputs);
+}
+
+void OnlineSolver::check_forces(const ReducedAnswer &solution) const {
+  if (nitsche_) return;
+  const Vector lambda = multiplier(solution);
+  const ContactState state = nodal_operators(solution, lambda).state;
+  rbvi::check_forces(scene_, contact_, solution.mu, state, lambda, nullptr);
 }
 
 Outputs OnlineSolver::outputs(const Mu &mu, const ReducedAnswer &solution) const {

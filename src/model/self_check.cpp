@@ -50,6 +50,7 @@ SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries)
     try {
       const ReducedAnswer solution = solver.solve(mu);
       const Outputs outputs = solver.outputs(mu, solution);
+      solver.check_forces(solution);
       raise(check.residual, outputs.kkt_residual.value_or(0), mu);
       raise(check.penetration, outputs.max_penetration.value_or(0), mu);
       // By Nitsche's method stresses at nodes exceed the bound by what the mesh leaves of the law.

@@ -1,6 +1,7 @@
 #include "rbvi/solve/high_fidelity.hpp"
 
 #include "contact_method.hpp"
+#include "rbvi/contact/force_balance.hpp"
 #include "rbvi/contact/history.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/imposed.hpp"
@@ -34,6 +35,9 @@ void measure(const Problem &problem, const Operators &op, const Vector &weights,
   of_outputs.weights = weights;
   of_outputs.state = op.state;
   contact_outputs(problem.contact(), op.mu, of_outputs, result.lambda, 0, outputs);
+  // Of several ranks each may have its own rows alone.
+  check_forces(problem.scene(), problem.contact(), op.mu, op.state, result.lambda,
+               ranks_of(problem.comm()) == 1 ? &op.b : nullptr);
 }
 
 Vector whole_displacement(const Problem &problem, const Mu &mu, Vec u) {

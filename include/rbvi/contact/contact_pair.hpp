@@ -134,6 +134,14 @@ struct SlaveLines {
 /// `whole`: the lines that face nothing, too. `partners` must outlive them.
 SlaveLines slave_lines(const Partners &partners, bool whole);
 
+/// B^T lambda at all nodes of the slave, then of the master, node * 2 + component. `lambda`: with
+/// friction those of both laws.
+Vector nodal_forces(const Partners &partners, const PairMultipliers &multipliers,
+                    const Vector &lambda);
+/// What the slave (part 0) and the master (part 1) are pushed with at each point.
+PointForces point_forces(const Partners &partners, const PairMultipliers &multipliers,
+                         const Vector &lambda);
+
 /// Finds the partners of two curves: along the field of normals, or vertically, then the curves
 /// must be graphs (as_graph). Gaps are those of the curves. `hats`: of the slave edges, that the
 /// integrals are over.

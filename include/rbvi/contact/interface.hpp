@@ -113,6 +113,14 @@ inline bool is_wanted(const WantedNodes &wanted, Index node) {
   return wanted.empty() || wanted[node];
 }
 
+/// What contact pushes a body with at one of the points that it is integrated over.
+struct PointForce {
+  int part; ///< of the mesh: its boundary
+  Point at; ///< on the straight edge, mapped and not displaced
+  Point force;
+};
+using PointForces = std::vector<PointForce>;
+
 class EntitySum;
 struct NitscheLayer;
 
@@ -174,6 +182,11 @@ public:
   /// The gap that is left, no displacement counts, at every node that cannot move and has no
   /// multiplier, and the size of what it is a difference of.
   virtual std::vector<std::array<double, 2>> held_gaps(const FullMu & /*mu*/) const { return {}; }
+  /// The forces that outputs are sums of, on both sides; empty where they are none of points.
+  virtual PointForces point_forces(const FullMu & /*mu*/, const ContactState & /*state*/,
+                                   const Vector & /*lambda*/) const {
+    return {};
+  }
   /// B^T lambda at all nodes of the mesh, node * components + c, those that are held included.
   /// Throws failure by Nitsche's method.
   virtual Vector nodal_forces(const FullMu &mu, const ContactState &state,

@@ -30,8 +30,7 @@ double centre_pressure(const Vector &pressure, const Vector &s, double half_widt
 struct SupportState {
   const Vector &lambda;  ///< normal multipliers, then tangential ones if there are any
   const Vector &weights; ///< vertices: integral of the hat function
-  const Vector &push;    ///< multipliers: their work on a unit horizontal displacement, B e_x
-  const Vector &lift;    ///< and on a vertical one, B e_y
+  const Point &force;    ///< on the body
   FrictionBound bound;
   double tangential_force; ///< integral of the magnitude of the tangential stress
   const Vector &images;    ///< of each vertex

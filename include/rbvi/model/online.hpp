@@ -36,6 +36,9 @@ public:
   /// alone (min_u is left unset: it needs the full field). Expected errors are set inside the box.
   /// Throws failure (check_finite).
   Outputs outputs(const Mu &mu, const ReducedAnswer &solution) const;
+  /// Throws failure where forces of contact do not balance (contact/force_balance.hpp). Costs
+  /// integrals over contact.
+  void check_forces(const ReducedAnswer &solution) const;
   /// At the dual dofs; of Nitsche's method what stands for it (nitsche_multiplier).
   Vector multiplier(const ReducedAnswer &solution) const;
   /// Gap that is left at the nodes with a constraint (ContactOperators::nodal_gap); infinite where

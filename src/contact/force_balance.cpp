@@ -1,0 +1,113 @@
+#include "rbvi/contact/force_balance.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/formula.hpp"
+#include "rbvi/core/largest.hpp"
+#include "rbvi/core/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace rbvi {
+
+namespace {
+
+/// The terms of a force on the motions: f_x, f_y, and x f_y - y f_x.
+void add(const Point &at, const Point &force, double sign, Resultant &sum, Resultant &sizes) {
+  const double first = at[0] * force[1], second = at[1] * force[0];
+  sum[0] += sign * force[0];
+  sum[1] += sign * force[1];
+  sum[2] += sign * (first - second);
+  sizes[0] += std::abs(force[0]);
+  sizes[1] += std::abs(force[1]);
+  sizes[2] += std::abs(first) + std::abs(second);
+}
+
+/// Where the nodes are on the straight, mapped edges.
+std::vector<Point> arms(const Scene &scene, const FullMu &mu, const InterfaceMesh &mesh) {
+  std::vector<Point> result = images(scene.map, mu, mesh.points);
+  for (Index e = 0; e < mesh.count() && mesh.per_entity == 3; ++e) {
+    const int *nodes = mesh.nodes_of(e);
+    result[nodes[2]] = (result[nodes[0]] + result[nodes[1]]) / 2;
+  }
+  return result;
+}
+
+/// Puts what the solver has in place of forces that were evaluated anew, at the nodes that move.
+/// Not where several nodes move as one.
+void take_solved(const InterfaceMesh &mesh, const Vector &solved, Vector &forces) {
+  std::set<int> seen;
+  for (const int dof : mesh.dofs)
+    if (dof >= 0 && !seen.insert(dof).second) return;
+  for (std::size_t k = 0; k < mesh.dofs.size(); ++k)
+    if (mesh.dofs[k] >= 0) forces[static_cast<Index>(k)] = solved[mesh.dofs[k]];
+}
+
+} // namespace
+
+void TwoRoads::add_point(const Point &at, const Point &force) {
+  add(at, force, 1, by_points, sizes);
+}
+
+void TwoRoads::add_node(const Point &at, const Point &force) {
+  add(at, force, -1, by_nodes, sizes);
+}
+
+double TwoRoads::difference() const {
+  // A component that vanishes is round-off of the others.
+  const double force = std::hypot(sizes[0], sizes[1]);
+  const Resultant scales{force, force, sizes[2]};
+  double result = 0;
+  for (std::size_t i = 0; i < scales.size(); ++i)
+    if (const double apart = std::abs(by_points[i] - by_nodes[i]); !(apart == 0))
+      result = larger(result, apart / scales[i]);
+  return result;
+}
+
+std::vector<TwoRoads> two_roads(const Scene &scene, const ContactInterface &interface,
+                                const FullMu &mu, const ContactState &state, const Vector &lambda,
+                                const Vector &solved) {
+  const InterfaceMesh &mesh = interface.mesh();
+  if (mesh.dim != 2 || mesh.components != 2) return {};
+  const PointForces points = interface.point_forces(mu, state, lambda);
+  if (points.empty()) return {};
+  std::vector<TwoRoads> sides(mesh.parts.size());
+  for (const auto &[part, at, force] : points)
+    sides[part].add_point(at, force);
+  Vector forces = interface.nodal_forces(mu, state, lambda);
+  if (solved.size() > 0) take_solved(mesh, solved, forces);
+  const std::vector<Point> at = arms(scene, mu, mesh);
+  std::size_t node = 0;
+  for (std::size_t part = 0; part < sides.size(); ++part)
+    for (int k = 0; k < mesh.parts[part]; ++k, ++node) {
+      const Index first = 2 * static_cast<Index>(node);
+      sides[part].add_node(at[node], {forces[first], forces[first + 1], 0});
+    }
+  return sides;
+}
+
+void check_forces(const Scene &scene, const Contact &contact, const FullMu &mu,
+                  const ContactState &state, const Vector &lambda, const SparseMatrix *b,
+                  double tolerance) {
+  for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
+    const ContactInterface &interface = *contact.interfaces[i];
+    if (interface.nitsche() != nullptr) continue;
+    const Index first = contact.first_row[i], count = interface.dual().size();
+    const Vector own = lambda.segment(first, count);
+    const Vector solved = b == nullptr ? Vector() : b->middleRows(first, count).transpose() * own;
+    const std::vector<TwoRoads> sides = two_roads(scene, interface, mu, state, own, solved);
+    for (std::size_t side = 0; side < sides.size(); ++side)
+      if (const double apart = sides[side].difference(); !(apart <= tolerance))
+        throw failure("the forces of '" + contact.names[i] + "' on the body of the boundary '" +
+                      scene.contacts[i].entities.parts[side] + "' do not balance: by pressures " +
+                      "and normals they are (" + short_number(sides[side].by_points[0]) + ", " +
+                      short_number(sides[side].by_points[1]) + "), by the equations that were " +
+                      "solved (" + short_number(sides[side].by_nodes[0]) + ", " +
+                      short_number(sides[side].by_nodes[1]) + "), " + short_number(apart) +
+                      " of their terms apart, moments counted: does each function of this contact "
+                      "return the same each time that it is asked?");
+  }
+}
+
+} // namespace rbvi
