@@ -1,0 +1,96 @@
+// Forces of contact on two roads: they agree where both have the same normals, and a wrong normal
+// on one of them is seen, with the name of the contact.
+#include "rbvi/contact/force_balance.hpp"
+#include "rbvi/core/error.hpp"
+#include "support_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rbvi::force_balance_test {
+namespace {
+
+const FullMu mu{1};
+
+/// An arc about the origin on something rigid, by the normals of a circle.
+SupportScene on_circle(int degree, const Point &centre) {
+  SupportScene scene = support_scene(degree);
+  scene.support.normal = [centre](const FullMu &, const Point &x) {
+    const Point away = x - centre;
+    return away / norm(away);
+  };
+  scene.contacts = {rigid_support(scene.support)};
+  return scene;
+}
+
+/// Pressures and shear stresses of both signs, so that no component cancels.
+Vector tractions(Index nodes) {
+  Vector lambda(2 * nodes);
+  for (Index i = 0; i < nodes; ++i) {
+    lambda[i] = 1 + 0.5 * static_cast<double>(i);
+    lambda[nodes + i] = 0.2 - 0.1 * static_cast<double>(i % 3);
+  }
+  return lambda;
+}
+
+/// The contact of a scene on an arc.
+Contact contact_on(const SupportScene &scene, int degree) {
+  Contact contact;
+  contact.interfaces.push_back(
+      scene.contacts.front().make(scene, support_curve(arc(8, 0.6), degree)));
+  contact.names = {"foot"};
+  contact.first_row = {0, contact.interfaces.front()->dual().size()};
+  return contact;
+}
+
+TEST(ForceBalance, BothRoadsAgree) {
+  for (const int degree : {1, 2}) {
+    const SupportScene scene = on_circle(degree, {});
+    const Contact contact = contact_on(scene, degree);
+    ContactInterface &interface = *contact.interfaces.front();
+    const Vector lambda = tractions(interface.dual().nodes());
+    ContactOperators operators;
+    interface.assemble_all(mu, {}, operators);
+    const Vector solved = operators.b.transpose() * lambda;
+    for (const Vector &by_solver : {Vector(), solved}) {
+      const std::vector<TwoRoads> sides = two_roads(scene, interface, mu, {}, lambda, by_solver);
+      ASSERT_EQ(sides.size(), 1U);
+      EXPECT_LT(sides.front().difference(), 1e-14);
+      for (const double force : sides.front().by_points)
+        EXPECT_GT(std::abs(force), 0.05) << "there is something to compare";
+      EXPECT_GT(sides.front().by_points[1], 1) << "upwards, onto the body";
+    }
+    check_forces(scene, contact, mu, {}, lambda, &operators.b);
+  }
+}
+
+/// The normals of another circle, whose centre is farther away: those of the nearest of two named
+/// circles that is not the boundary's.
+TEST(ForceBalance, AWrongNormalIsSeen) {
+  for (const int degree : {1, 2}) {
+    const SupportScene scene = on_circle(degree, {}), other = on_circle(degree, {0.1, 2, 0});
+    const Contact contact = contact_on(scene, degree);
+    const Vector lambda = tractions(contact.nodes());
+    ContactOperators wrong;
+    contact_on(other, degree).interfaces.front()->assemble_all(mu, {}, wrong);
+    try {
+      check_forces(scene, contact, mu, {}, lambda, &wrong.b);
+      ADD_FAILURE() << "a wrong normal passes";
+    } catch (const Error &error) {
+      EXPECT_EQ(std::string(error.what())
+                    .find("the forces of 'foot' on the body of the boundary "
+                          "'support' do not balance"),
+                0U)
+          << error.what();
+    }
+  }
+}
+
+TEST(ForceBalance, WhatIsNotFiniteIsNoBalance) {
+  TwoRoads roads;
+  EXPECT_EQ(roads.difference(), 0) << "nothing touches";
+  roads.add_point({1, 0, 0}, {0, std::numeric_limits<double>::quiet_NaN(), 0});
+  EXPECT_FALSE(roads.difference() <= 1e-10);
+}
+
+} // namespace
+} // namespace rbvi::force_balance_test
