@@ -1,12 +1,11 @@
 // Contact of a curve with something rigid by multipliers: integrals over its edges, which ask at
 // each of their points what it faces, and the outputs.
 #include "rbvi/contact/contact_area.hpp"
-#include "rbvi/contact/curve.hpp"
 #include "rbvi/contact/entity_sum.hpp"
 #include "rbvi/contact/support.hpp"
 #include "rbvi/contact/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/quadrature.hpp"
+#include "trace_points.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,33 +13,6 @@
 namespace rbvi {
 
 namespace {
-
-/// A quadrature point of every edge; the weights sum to 1.
-struct TracePoint {
-  double s; ///< along the edge, 0 ... 1
-  double weight;
-  std::array<double, 2> eta; ///< of both multipliers: 1 - s and s
-  std::array<double, 3> phi; ///< of the displacements: vertices, middle
-};
-
-TracePoint trace_point(int degree, const EdgePoint &at) {
-  return {at.s, at.weight, {1 - at.s, at.s}, edge_functions(degree, at.s)};
-}
-
-/// Four Gauss points, or the two vertices: there only the vertex itself moves, a middle is free.
-std::vector<TracePoint> trace_points(int degree, bool lumped) {
-  if (lumped) return {trace_point(degree, {0, 0.5}), trace_point(degree, {1, 0.5})};
-  std::vector<TracePoint> points;
-  for (const EdgePoint &at : edge_quadrature)
-    points.push_back(trace_point(degree, at));
-  return points;
-}
-
-/// The point of an edge, reference coordinates.
-Point point_on(const Cell &edge, const TracePoint &at) {
-  const Point &begin = edge.reference[0], &end = edge.reference[1];
-  return {at.eta[0] * begin[0] + at.eta[1] * end[0], at.eta[0] * begin[1] + at.eta[1] * end[1], 0};
-}
 
 double length_of(const Cell &edge) {
   return edge_length(edge.mapped[0], edge.mapped[1]);

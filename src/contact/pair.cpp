@@ -285,20 +285,19 @@ std::vector<std::array<bool, 2>> PairInterface::closed_ends() const {
 
 void PairInterface::outputs(const FullMu &mu, const ContactOperators &operators,
                             const Vector &lambda, double least, Outputs &outputs) const {
-  const Index count = multipliers_.count();
-  const Vector pressure = lambda.head(count);
-  const Vector own_images = image_counts(scene_.mirrors, dual_.points);
-  pressure_outputs(own_images, operators.weights, pressure, least, outputs);
+  const Vector pressure = lambda.head(multipliers_.count());
+  const Vector copies = image_counts(scene_.mirrors, dual_.points);
+  pressure_outputs(copies, operators.weights, pressure, least, outputs);
   const Vector whole = multipliers_.whole_weights(
       curves(images(scene_.map, mu, mesh_.points)).slave.hats(scene_.axisymmetric));
-  const Vector shares = operators.weights.head(count).cwiseQuotient(whole);
+  const Vector shares = operators.weights.cwiseQuotient(whole);
   outputs.ends_in_contact =
       image_count(scene_.mirrors) *
       ends_in_contact(multipliers_, *slave_, shares, pressure, least, closed_ends());
   if (is_of_heights(pair_)) return;
   const Partners found = partners(mu, operators.state);
   if (friction())
-    friction_outputs(own_images, tangential_force(found, multipliers_, lambda.tail(count)),
+    friction_outputs(copies, tangential_force(found, multipliers_, lambda.tail(pressure.size())),
                      operators.weights, lambda, bound(mu), outputs);
   Point force{}; // on the slave
   for (const PointForce &at : rbvi::point_forces(found, multipliers_, lambda))
