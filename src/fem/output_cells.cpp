@@ -163,9 +163,8 @@ private:
     const auto components = static_cast<std::size_t>(dofs_.components);
     std::vector<double> values(components *
                                static_cast<std::size_t>(nodes_per_cell(mesh_.dim, mesh_.degree)));
-    for (std::size_t cell = 0; cell < mesh_.cells.size(); ++cell) {
-      if (!is_in({load.form.region}, cell)) continue;
-      load.form.kernel({}, cell_of(mesh_, cell), values.data());
+    for (const CellFacet &at : places_of(mesh_, load.form)) {
+      load.form.kernel({}, cell_of(mesh_, at.cell), values.data());
       double work = 0, terms = 0;
       for (std::size_t i = 0; i < values.size(); ++i) {
         work += direction[i % components] * values[i];
