@@ -144,7 +144,8 @@ private:
                                : flat                      ? key.dimension + "*m"
                                                            : key.dimension);
     } catch (const Error &error) {
-      throw bad_input((thin ? std::string("in plane problems forces are per thickness: ") : "") +
+      const std::string unit = thin ? unit_in(*reader_.units, dimension_of("N/m")) : "";
+      throw bad_input((thin ? "in plane problems forces are per thickness (" + unit + "): " : "") +
                       error.what());
     }
   }

@@ -214,7 +214,7 @@ TEST(WrongCase, Units) {
         with({{"let", "{area: depth*x + 3 * y^2, ratio: depth/x, mean: sqrt(x*depth)}"},
               {"outputs", "{far: {integral: pressure*x, where: x > depth and gap < mean}}"}})})
     EXPECT_EQ(said(block_case(right)), "") << block_case(right);
-  const std::string thin = "in plane problems forces are per thickness: ";
+  const std::string thin = "in plane problems forces are per thickness (N/mm): ";
   expect_refused({
       {with({}, "MPa"), "a length is wanted, -depth is a stress"},
       {with({}, "foot"), "unknown unit 'foot'"},
