@@ -11,6 +11,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+
+#include <unistd.h>
 
 namespace rbvi::free_bodies_test {
 namespace {
@@ -167,6 +170,39 @@ TEST(FreeBodies, AReducedBlockIsInBalance) {
               online.solve({1, 0, 0}, true);
             }).find("can move at no cost"),
             std::string::npos);
+}
+
+/// Pushed down by what is imposed and held sideways by friction alone, by a stiffness that is exact
+/// or interpolated: what is read from the file answers as the full solve does.
+TEST(FreeBodies, AModelOfAPushedBlockComesBackFromItsFile) {
+  for (const std::string young : {"15 * (1 + grade)", "15 * exp(grade*y)"}) {
+    const Scene scene = make_scene(
+        read_case("rbvi: 1\nphysics: plane_strain\nmesh: {built_in: one_block, degree: 1}\n"
+                  "parameters: {grade: {range: [0.1, 0.5], default: 0.2}, depth: {range: [0.01, "
+                  "0.05], default: 0.03}}\nmaterials: {rubber: {at: all, E: " +
+                      young +
+                      ", nu: 0.3}}\nimposed: {top: {at: top, uy: -depth}}\n"
+                      "contact: {floor: {at: contact, against: {plane: {normal: [0, -1], position: "
+                      "0}}, friction: {coulomb: 0.3}}}\n"
+                      "outputs: {hold: {reaction: [0, 1], at: top}}\n",
+                  "block.yaml"),
+        {});
+    const Mu mu{0.3, 0.037};
+    Reduced made(scene, "grid:4,3");
+    made.reduce(testing_reduced::everything());
+    const double force = HighFidelity(made.problem, {}).solve(mu).outputs.normal_force.value();
+    if (rank_of(PETSC_COMM_WORLD) != 0) continue;
+    const auto path = std::filesystem::path(testing::TempDir()) /
+                      ("rbvi_pushed_" + std::to_string(::getpid()) + ".h5");
+    write_model(made.model, path);
+    const ReducedModel model = read_model(path, catalogue(), false);
+    std::filesystem::remove(path);
+    std::filesystem::remove(fields_file(path));
+    OnlineSolver online(model);
+    const Outputs outputs = online.outputs(mu, online.solve(mu));
+    EXPECT_NEAR(outputs.normal_force.value() / force, 1, 1e-6) << young;
+    EXPECT_NEAR(outputs.named.front().value / -force, 1, 1e-6) << "down, as it is pushed";
+  }
 }
 
 } // namespace
