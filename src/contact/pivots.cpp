@@ -26,6 +26,20 @@ Index nearest_node(const InterfaceMesh &mesh, const Point &x) {
   return nearest;
 }
 
+/// Half of the function in the middle of each edge at a vertex of a triangle, in one component.
+void add_middles(const InterfaceMesh &mesh, std::vector<Eigen::Triplet<double>> &moves) {
+  if (mesh.degree == 1 || mesh.vertices() != 3) return;
+  const auto dof = [&](int node, int c) { return mesh.dofs[node * mesh.components + c]; };
+  for (Index entity = 0; entity < mesh.count(); ++entity)
+    for (int edge = 0; edge < 3; ++edge)
+      for (const int end : {edge, (edge + 1) % 3})
+        for (int c = 0; c < mesh.components; ++c) {
+          const int vertex = dof(mesh.nodes_of(entity)[end], c),
+                    middle = dof(mesh.nodes_of(entity)[3 + edge], c);
+          if (vertex >= 0 && middle >= 0) moves.emplace_back(vertex, middle, 0.5);
+        }
+}
+
 } // namespace
 
 ContactDofs contact_dofs(const Contact &contact) {
@@ -33,6 +47,9 @@ ContactDofs contact_dofs(const Contact &contact) {
   const Index columns = contact.interfaces.front()->mesh().columns;
   dofs.node.assign(columns, -1);
   dofs.row_node.assign(contact.dual_size(), -1);
+  std::vector<Eigen::Triplet<double>> moves;
+  for (int dof = 0; dof < columns; ++dof)
+    moves.emplace_back(dof, dof, 1);
   Index first_node = 0;
   for (std::size_t k = 0; k < contact.interfaces.size(); ++k) {
     const InterfaceMesh &mesh = contact.interfaces[k]->mesh();
@@ -42,6 +59,7 @@ ContactDofs contact_dofs(const Contact &contact) {
       const auto node = static_cast<Index>(i) / mesh.components;
       dofs.node[mesh.dofs[i]] = first_node + node;
     }
+    add_middles(mesh, moves);
     std::vector<Index> nodes = dual.vertices;
     for (Index i = std::ssize(nodes); i < dual.nodes(); ++i)
       nodes.push_back(nearest_node(mesh, dual.points[i]));
@@ -49,6 +67,8 @@ ContactDofs contact_dofs(const Contact &contact) {
       dofs.row_node[row] = first_node + nodes[dual_row(contact, row).node];
     first_node += mesh.nodes();
   }
+  dofs.moves.resize(columns, columns); // an edge is of two triangles
+  dofs.moves.setFromTriplets(moves.begin(), moves.end(), [](double a, double) { return a; });
   return dofs;
 }
 
@@ -115,23 +135,28 @@ Matrix SquareFactor::solve_transposed(const Matrix &right) const {
   return symmetric_ ? Matrix(symmetric_->solve(right)) : Matrix(lu_->transpose().solve(right));
 }
 
-PivotBlock::PivotBlock(const SparseMatrix &c, const std::vector<Index> &pivots) {
+PivotBlock::PivotBlock(const SparseMatrix &c, const std::vector<Index> &pivots,
+                       const SparseMatrix &moves) {
   std::vector<Index> position(c.cols(), -1), other(c.cols(), -1);
   for (std::size_t k = 0; k < pivots.size(); ++k)
     position[pivots[k]] = static_cast<Index>(k);
   std::vector<Eigen::Triplet<double>> block, rest;
-  for (Index row = 0; row < c.rows(); ++row)
+  const SparseMatrix moved = c * SparseMatrix(moves.transpose());
+  for (Index row = 0; row < c.rows(); ++row) {
+    // Vertex quadrature keeps the pattern of a mass matrix.
+    for (SparseMatrix::InnerIterator entry(moved, row); entry; ++entry)
+      if (const Index column = position[entry.col()]; column >= 0 && entry.value() != 0)
+        block.emplace_back(static_cast<int>(row), static_cast<int>(column), entry.value());
     for (SparseMatrix::InnerIterator entry(c, row); entry; ++entry) {
-      if (entry.value() == 0) continue; // vertex quadrature keeps the pattern of a mass matrix
-      const bool pivot = position[entry.col()] >= 0;
-      Index &column = (pivot ? position : other)[entry.col()];
+      if (position[entry.col()] >= 0 || entry.value() == 0) continue;
+      Index &column = other[entry.col()];
       if (column < 0) {
         column = std::ssize(coupled_);
         coupled_.push_back(entry.col());
       }
-      (pivot ? block : rest)
-          .emplace_back(static_cast<int>(row), static_cast<int>(column), entry.value());
+      rest.emplace_back(static_cast<int>(row), static_cast<int>(column), entry.value());
     }
+  }
   Eigen::SparseMatrix<double> square(c.rows(), c.rows());
   square.setFromTriplets(block.begin(), block.end());
   others_.resize(c.rows(), std::ssize(coupled_));

@@ -1,6 +1,7 @@
 #include "rbvi/fem/free_motions.hpp"
 
 #include "motion_text.hpp"
+#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/elastic_forms.hpp"
@@ -275,14 +276,26 @@ void choose_springs(const Bodies &bodies, FreeBody &body) {
   body.springs = qr.q;
 }
 
-/// theta of the first exact term of a on cells of the body. Collective.
+/// theta of the first of the exact terms of a on cells of the body that vary least, of those that
+/// are positive: Lame's lambda vanishes at Poisson's ratio 0. Collective.
 std::vector<Factor> coefficient_on(const Scene &scene, const Mesh &mesh, int body) {
+  const std::vector<Mu> box = corners_and_faces(scene.parameters);
+  double least = std::numeric_limits<double>::infinity();
+  std::vector<Factor> result;
   for (const Term &term : scene.a) {
+    const std::string &region = term.form.region;
     if (!term.theta || !term.form.boundary.empty() || !term.form.means.empty()) continue;
-    if (term.form.region.empty() || bodies_in(mesh, mesh.region.at(term.form.region))[body] != 0)
-      return *term.theta;
+    if (!region.empty() && bodies_in(mesh, mesh.region.at(region))[body] == 0) continue;
+    Vector theta(std::ssize(box) + 1);
+    theta[0] = coefficient_of(term, generic_point(scene.parameters));
+    for (Index k = 1; k < theta.size(); ++k)
+      theta[k] = coefficient_of(term, expand(scene.parameters, box[k - 1]));
+    const double variation = theta.maxCoeff() / theta.minCoeff();
+    if (!(theta.minCoeff() > 0 && variation < (1 - 1e-6) * least)) continue;
+    least = variation;
+    result = *term.theta;
   }
-  return {};
+  return result;
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/method/anderson.hpp"
+#include "rbvi/method/residual.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
 #include "rbvi/model/free_bodies.hpp"
 
@@ -109,18 +110,21 @@ void ConeSolver::solve_pair(const Vector &state, ReducedAnswer &answer) {
 void ConeSolver::finish(ReducedAnswer &answer) {
   const Vector au = at_mu_.times(answer.u), btx = b_scale_ * (b_.transpose() * answer.lambda),
                bu = b_scale_ * (b_ * answer.u);
-  const double terms = b_scale_ * (b_.cwiseAbs() * answer.u.cwiseAbs()).maxCoeff();
+  const Vector diagonal = at_mu_.diagonal();
+  const Vector moved =
+      answer.u.cwiseAbs() + (f_.cwiseAbs() + btx.cwiseAbs()).cwiseQuotient(diagonal.cwiseAbs());
+  const double displacement = b_scale_ * (b_.cwiseAbs() * moved).maxCoeff();
   answer.energy = 0.5 * answer.u.dot(au) - f_.dot(answer.u);
-  answer.residual =
-      kkt_residual({at_mu_.restricted(au), at_mu_.restricted(btx), at_mu_.restricted(f_), bu, g_,
-                    answer.lambda, model_.contact.free_modes, terms});
+  answer.residual = kkt_residual(
+      {at_mu_.restricted(au), at_mu_.restricted(btx), at_mu_.restricted(f_), bu, g_, answer.lambda,
+       model_.contact.free_modes, displacement, diagonal.cwiseProduct(answer.u).norm()});
   answer.least_pressure = active_fraction;
   if (model_.body.springs.size() > 0) {
     const Matrix motions = at_mu_.free_motions();
     answer.motions =
         free_motions_at(at_mu_, motions, b_scale_ * (b_ * motions), uniform_laws(b_.rows(), 1, {}));
   }
-  if (!(answer.residual <= largest_left))
+  if (!(answer.residual <= query_residual_limit))
     throw failure((std::ostringstream("the reduced answer has a KKT residual of ", std::ios::ate)
                    << answer.residual << ": reduce again with fewer generators or more supremizers")
                       .str());

@@ -72,7 +72,7 @@ ReducedAnswer FollowingSolver::solve(const FullMu &mu, Relaxed relaxed) {
       .contact = contact_, .mu = mu, .rows = rows_are_identity_ ? nullptr : &evaluated_.rows()};
   NonlinearResult found =
       solve_following(followed, nodal_ ? &*nodal_ : nullptr, problem, start(mu), options);
-  if (!(found.residual <= largest_left))
+  if (!(found.residual <= query_residual_limit))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: reduce again with more training parameters");
   ReducedAnswer answer;

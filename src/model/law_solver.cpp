@@ -27,7 +27,7 @@ void NodeLawSolver::solve_at_nodes(const LawAtMu &law, ReducedAnswer &answer) {
   const bool continues = answer.motions && answer.start.size() > 0;
   FrictionSolver &friction = problem_.friction();
   FrictionAnswer found = friction.answer(law.q, start, by_rule_ && !continues);
-  if (!found.converged || !(found.residual <= largest_left))
+  if (!found.converged || !(found.residual <= query_residual_limit))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: " + found.reason);
   if (answer.motions) answer.motions->slope = friction.change(law.by_beta);

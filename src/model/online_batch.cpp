@@ -1,6 +1,7 @@
 #include "online_batch.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/largest.hpp"
 #include "rbvi/core/locking.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/output_table.hpp"
@@ -169,8 +170,8 @@ void answer_row(const Mu &mu, const std::string &id, OnlineSolver &solver,
     if (inside && beyond_validation(solver.model(), mu)) ++tally.unvalidated;
     if (solution.to_other > 0) ++tally.not_alone;
     tally.seconds += outputs.seconds.value_or(0);
-    tally.residual = std::max(tally.residual, outputs.kkt_residual.value_or(0));
-    tally.violation = std::max(tally.violation, violation(outputs));
+    tally.residual = larger(tally.residual, outputs.kkt_residual.value_or(0));
+    tally.violation = larger(tally.violation, violation(outputs));
     tally.resolution.add(outputs);
     const Scene &scene = solver.scene();
     tally.locking = std::max(
@@ -198,7 +199,7 @@ void report(const OnlineArguments &arguments, const OnlineSolver &solver, const 
 double violation(const Outputs &outputs) {
   const double peak = outputs.peak_pressure.value_or(0);
   const double friction = peak > 0 ? outputs.friction_violation.value_or(0) / peak : 0;
-  return std::max(outputs.kkt_residual.value_or(0), friction);
+  return larger(outputs.kkt_residual.value_or(0), friction);
 }
 
 void warn_of_violation(const ReducedModel &model, double violation, std::ostream &out) {

@@ -197,6 +197,11 @@ Vector BodyAtMu::times(const Vector &u) const {
          q * (core_ * (q.transpose() * u));
 }
 
+Vector BodyAtMu::diagonal() const {
+  return body_.l_.size() == 0 ? Vector(lower_triangle().diagonal())
+                              : Vector(scale_ * body_.a_.diagonal());
+}
+
 Matrix BodyAtMu::half_response_of_turned(const Matrix &turned) const {
   if (inverse_roots_.size() > 0) return (inverse_roots_ / std::sqrt(scale_)).asDiagonal() * turned;
   if (inverse_.size() > 0) {

@@ -43,7 +43,7 @@ MethodResult solve_active_set(FullBody &body, const Operators &op, const Vector 
     take(std::move(found), result);
   }
   if (result.lambda.size() > 0) // else not converged: there is no displacement either
-    body.displacement(op, result.lambda, result.free_u.get());
+    result.u_error = body.displacement(op, result.lambda, result.free_u.get());
   return result;
 }
 

@@ -95,10 +95,12 @@ public:
   }
   MethodResult solve(const ContactTask &task) override;
   void check(const MethodResult &result) const override {
-    require_residual(result, largest_residual);
+    require_residual(result, residual_limit);
   }
 
 private:
+  /// Without what is measured on it.
+  MethodResult refined(FullBody &body, const ContactTask &task);
   Vector start_of(const ContactTask &task) {
     if (task.near != nullptr) return task.near->start;
     const bool columns_are_kept = part_ || body_.count() > 0;
@@ -112,8 +114,21 @@ private:
 
 MethodResult Condensed::solve(const ContactTask &task) {
   const Operators &op = task.op;
-  if (part_) part_->set(op);
-  FullBody &body = part_ ? static_cast<FullBody &>(*part_) : body_;
+  MethodResult result;
+  if (part_) {
+    part_->set(op);
+    result = refined(*part_, task);
+  }
+  // What a part leaves by round-off, the body itself may not.
+  if (!part_ || !(result.kkt.largest() <= residual_limit)) result = refined(body_, task);
+  if (!result.converged) return result;
+  measure(problem_, op, op.weights, result);
+  result.slip = slip_left(problem_, op, task.slip, result);
+  return result;
+}
+
+MethodResult Condensed::refined(FullBody &body, const ContactTask &task) {
+  const Operators &op = task.op;
   ActiveSetOptions options{!task.continues, options_.looks_for_others, {}};
   MethodResult result = solve_active_set(body, op, start_of(task), options);
   if (!result.converged) return result;
@@ -129,15 +144,14 @@ MethodResult Condensed::solve(const ContactTask &task) {
     const Vector from = result.start.size() > 0 ? result.start : result.lambda;
     const auto [to_other, iterations, columns] =
         std::tuple{result.to_other, result.iterations, result.columns};
-    result = solve_active_set(body, op, from, options);
-    if (!result.converged) return result;
+    MethodResult next = solve_active_set(body, op, from, options);
+    if (!next.converged) break;
+    result = std::move(next);
     result.to_other = std::max(to_other, result.to_other);
     result.iterations += iterations;
     result.columns += columns;
     result.kkt = residual();
   }
-  measure(problem_, op, op.weights, result);
-  result.slip = slip_left(problem_, op, task.slip, result);
   return result;
 }
 
@@ -150,9 +164,15 @@ public:
     NonlinearStart start{undeformed(problem_.contact(), problem_.scene(), op.mu), {}};
     if (task.near != nullptr && !bounds_follow_pressure(op.laws))
       start = {task.near->state, task.near->start};
-    auto [result, steps] =
-        solve_following(body_, problem_, op, task.slip, start, options_.nonlinear);
-    result.kkt = kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda);
+    NonlinearOptions options = options_.nonlinear;
+    FollowingResult found = solve_from(start, task, options, op);
+    // Steps that change little may leave more of the laws, which a smaller tolerance takes out.
+    for (int pass = 0; pass < most_refinements && !(found.result.kkt.largest() <= allowed());
+         ++pass) {
+      options.tolerance /= 100;
+      if (!goes_on(found, task, options, op)) break;
+    }
+    auto &[result, steps] = found;
     measure(problem_, op, op.weights, result);
     result.load_steps = result.outputs.load_steps = steps.load_steps;
     result.slip = slip_left(problem_, op, task.slip, result);
@@ -161,8 +181,34 @@ public:
     result.states.push_back(std::move(steps.state));
     return std::move(result);
   }
-  void check(const MethodResult &result) const override {
-    require_residual(result, std::max(largest_residual, 10 * options_.nonlinear.tolerance));
+  void check(const MethodResult &result) const override { require_residual(result, allowed()); }
+
+private:
+  double allowed() const { return std::max(residual_limit, 10 * options_.nonlinear.tolerance); }
+  FollowingResult solve_from(const NonlinearStart &start, const ContactTask &task,
+                             const NonlinearOptions &options, Operators &op) {
+    FollowingResult found = solve_following(body_, problem_, op, task.slip, start, options);
+    found.result.kkt =
+        kkt_residual(problem_.trace(), op, found.result.free_u.get(), found.result.lambda);
+    return found;
+  }
+  /// From where it is; false, and as it was, where the steps do not settle.
+  bool goes_on(FollowingResult &found, const ContactTask &task, const NonlinearOptions &options,
+               Operators &op) {
+    try {
+      Operators next = task.op;
+      FollowingResult closer =
+          solve_from({found.steps.state, found.steps.start}, task, options, next);
+      closer.result.iterations += found.result.iterations;
+      closer.steps.load_steps = std::max(closer.steps.load_steps, found.steps.load_steps);
+      auto &states = closer.steps.iterates;
+      states.insert(states.begin(), found.steps.iterates.begin(), found.steps.iterates.end());
+      op = std::move(next);
+      found = std::move(closer);
+    } catch (const Error &) { // of every rank
+      return false;
+    }
+    return true;
   }
 };
 

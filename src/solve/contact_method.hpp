@@ -65,6 +65,5 @@ void measure(const Problem &problem, const Operators &op, const Vector &weights,
              MethodResult &result);
 /// Of active sets. Throws failure, saying what to try, where the residual is larger.
 void require_residual(const MethodResult &result, double allowed);
-inline constexpr double largest_residual = 1e-10; ///< KKT, of active sets
 
 } // namespace rbvi

@@ -47,7 +47,7 @@ public:
     return result;
   }
   void check(const MethodResult &result) const override {
-    require_residual(result, largest_residual);
+    require_residual(result, residual_limit);
   }
 
 private:
@@ -63,7 +63,7 @@ private:
       }
       measure_over_ranks(problem_, task, distribute(problem_.dual_layout(), task.op, task.op.laws),
                          result);
-      if (!(result.residual <= largest_residual))
+      if (!(result.residual <= residual_limit))
         complaint = "a KKT residual of " + short_number(result.residual) +
                     " is left: try -hf_contact condensed";
       return result;

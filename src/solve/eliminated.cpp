@@ -250,9 +250,9 @@ SetSolution Eliminated::solve_system(const Operators &op, const OwnContact &cont
       std::vector<Index> pivots;
       collectively(layout_.comm,
                    [&] { pivots = choose_pivots(dofs_, multipliers_of(system, layout_), c); });
-      const Elimination z(layout_, c, pivots);
+      const Elimination z(layout_, c, pivots, dofs_.moves);
       std::optional<Elimination> unsymmetric;
-      if (!symmetric) unsymmetric.emplace(layout_, reactions, pivots);
+      if (!symmetric) unsymmetric.emplace(layout_, reactions, pivots, dofs_.moves);
       y = eliminate(op, z, unsymmetric ? &*unsymmetric : nullptr, constraint, force.get(),
                     accuracy);
     } catch (const Error &error) { // of every rank

@@ -43,7 +43,7 @@ Handle<VecScatter> scatter_to_pivots(MPI_Comm comm, const std::vector<PetscInt> 
 } // namespace
 
 Elimination::Elimination(const DualLayout &layout, const SparseMatrix &c,
-                         const std::vector<Index> &pivots)
+                         const std::vector<Index> &pivots, const SparseMatrix &moves)
     : comm_(layout.comm), contact_dofs_(c.cols()), c_(distribute_rows(layout, c)) {
   const auto [first, all] = first_and_all(comm_, c.rows());
   first_ = first;
@@ -53,18 +53,26 @@ Elimination::Elimination(const DualLayout &layout, const SparseMatrix &c,
   Handle<Vec> u;
   RBVI_CALL(MatCreateVecs(c_.get(), u.put(), values_.put()));
   to_pivots_ = scatter_to_pivots(comm_, pivots_, u.get(), values_.get());
-  separate_ = is_separate(layout, c, pivots);
+  SparseMatrix t(c.rows(), c.cols());
+  for (Index k = 0; k < t.rows(); ++k) {
+    t.startVec(k);
+    for (SparseMatrix::InnerIterator entry(moves, pivots[k]); entry; ++entry)
+      t.insertBack(k, entry.col()) = entry.value();
+  }
+  t.finalize();
+  t_ = distribute_rows(layout, t);
+  separate_ = is_separate(layout, c * SparseMatrix(moves.transpose()), pivots);
   if (separate_) {
-    collectively(comm_, [&] { block_ = PivotBlock(c, pivots); });
+    collectively(comm_, [&] { block_ = PivotBlock(c, pivots, moves); });
     return;
   }
   std::vector<Index> numbers(pivots.size());
   std::iota(numbers.begin(), numbers.end(), first_);
-  block_ = PivotBlock(gather_rows(comm_, c, numbers, count_), all_pivots(comm_, pivots));
+  block_ = PivotBlock(gather_rows(comm_, c, numbers, count_), all_pivots(comm_, pivots), moves);
 }
 
 /// Whether no rank's constraints see a pivot of another.
-bool Elimination::is_separate(const DualLayout &layout, const SparseMatrix &c,
+bool Elimination::is_separate(const DualLayout &layout, const SparseMatrix &moved,
                               const std::vector<Index> &pivots) const {
   if (ranks_of(comm_) == 1) return true;
   std::vector<PetscInt> owner(layout.columns.size(), 0);
@@ -73,8 +81,8 @@ bool Elimination::is_separate(const DualLayout &layout, const SparseMatrix &c,
     owner[dof] = self;
   over_ranks(comm_, MPI_MAX, owner);
   std::array<PetscInt, 1> shared{0};
-  for (Index row = 0; row < c.rows(); ++row)
-    for (SparseMatrix::InnerIterator entry(c, row); entry; ++entry)
+  for (Index row = 0; row < moved.rows(); ++row)
+    for (SparseMatrix::InnerIterator entry(moved, row); entry; ++entry)
       if (const PetscInt of = owner[entry.col()]; entry.value() != 0 && of != 0 && of != self)
         shared.front() = 1;
   over_ranks(comm_, MPI_MAX, shared);
@@ -106,11 +114,15 @@ void Elimination::extend(const Vector &right, Vec u) const {
   set_pivots(Vector::Zero(right.size()), u);
   RBVI_CALL(MatMult(c_.get(), u, values_.get()));
   const Vector left = right - LocalValues(values_.get()).get();
-  set_pivots(solved(left, [&](const Vector &all) { return block_.solve(all); }), u);
+  LocalValues(values_.get()).get() =
+      solved(left, [&](const Vector &all) { return block_.solve(all); });
+  RBVI_CALL(MatMultTransposeAdd(t_.get(), values_.get(), u, u));
 }
 
 Vector Elimination::multipliers(Vec r) const {
-  return solved(at_pivots(r), [&](const Vector &all) { return block_.solve_transposed(all); });
+  RBVI_CALL(MatMult(t_.get(), r, values_.get()));
+  return solved(LocalValues(values_.get()).get(),
+                [&](const Vector &all) { return block_.solve_transposed(all); });
 }
 
 void Elimination::reduce(Vec r) const {

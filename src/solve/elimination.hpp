@@ -1,7 +1,8 @@
 // Active constraints C u = c over the ranks, each of which gives up a displacement dof, its pivot:
 //
-//   u_P = C_P^-1 (c - C_N u_N).
+//   u_P = C_P^-1 (c - C_N u_N),
 //
+// on triangles of degree 2 with what its vertex moves (ContactDofs::moves), T^T u_P: C_P = C T^T.
 // A rank has the constraints of its dual nodes. Where those of two ranks share no pivot, as by
 // vertex quadrature, each rank factorises its block of C_P; elsewhere every rank factorises C_P
 // whole, which is as large as the active sets.
@@ -14,9 +15,11 @@ namespace rbvi {
 
 class Elimination {
 public:
-  /// `c`: this rank's constraints x contact dofs; `pivots`: a contact dof for each of them. Throws
+  /// `c`: this rank's constraints x contact dofs; `pivots`: a contact dof for each of them;
+  /// `moves`: as ContactDofs. Throws
   /// failure where C_P is singular. Collective.
-  Elimination(const DualLayout &layout, const SparseMatrix &c, const std::vector<Index> &pivots);
+  Elimination(const DualLayout &layout, const SparseMatrix &c, const std::vector<Index> &pivots,
+              const SparseMatrix &moves);
 
   Index count() const { return count_; } ///< of constraints, over all ranks
   /// The free displacement dofs of this rank's pivots.
@@ -26,24 +29,24 @@ public:
   Vector at_pivots(Vec u) const;
   void set_pivots(const Vector &values, Vec u) const;
 
-  /// Sets u_P = C_P^-1 (right - C_N u_N); `right`: of this rank's constraints. Collective.
+  /// Adds T^T C_P^-1 (right - C_N u_N) to u_N; `right`: of this rank's constraints. Collective.
   void extend(const Vector &right, Vec u) const;
-  /// r - C^T C_P^-T r_P, zero at the pivots. Collective.
+  /// r - C^T C_P^-T T r, zero at the pivots. Collective.
   void reduce(Vec r) const;
-  /// C_P^-T r_P of this rank's constraints. Collective.
+  /// C_P^-T T r of this rank's constraints. Collective.
   Vector multipliers(Vec r) const;
   /// PivotBlock::ties of this rank's constraints.
   SparseMatrix ties() const;
 
 private:
-  bool is_separate(const DualLayout &layout, const SparseMatrix &c,
+  bool is_separate(const DualLayout &layout, const SparseMatrix &moved,
                    const std::vector<Index> &pivots) const;
   template <class Solve> Vector solved(const Vector &own, Solve &&solve) const;
 
   MPI_Comm comm_;
   Index contact_dofs_;
   Index first_ = 0, count_ = 0; ///< of this rank's constraints among all
-  Handle<Mat> c_;
+  Handle<Mat> c_, t_;           ///< t_: T
   std::vector<PetscInt> pivots_;
   Handle<Vec> values_; ///< of the constraints
   Handle<VecScatter> to_pivots_;

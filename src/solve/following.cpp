@@ -28,7 +28,7 @@ FollowingResult solve_following(FactoredBody &body, const Problem &problem, Oper
   result.columns = static_cast<int>(body.count());
   result.converged = true;
   result.reason = steps.reason;
-  body.displacement(op, result.lambda, result.free_u.get());
+  result.u_error = body.displacement(op, result.lambda, result.free_u.get());
   return found;
 }
 

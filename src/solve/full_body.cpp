@@ -90,12 +90,12 @@ Vector FactoredBody::free(const Operators &op) {
   if (load == 0) return Vector::Zero(size());
   Handle<Vec> u;
   RBVI_CALL(VecDuplicate(op.f, u.put()));
-  solve_linear(ksp_, op.f, u.get());
+  (void)solve_refined(ksp_, op.f, u.get());
   return restrict_to(trace_, u.get());
 }
 
-void FactoredBody::displacement(const Operators &op, const Vector &lambda, Vec u) {
-  solve_linear(ksp_, reaction_rhs(trace_, op, lambda).get(), u);
+double FactoredBody::displacement(const Operators &op, const Vector &lambda, Vec u) {
+  return solve_refined(ksp_, reaction_rhs(trace_, op, lambda).get(), u);
 }
 
 } // namespace rbvi

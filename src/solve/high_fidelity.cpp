@@ -13,6 +13,12 @@
 
 namespace rbvi {
 
+namespace {
+
+constexpr double least_told = 1e-8, least_known = 1e-3; ///< of u, relative
+
+} // namespace
+
 void measure(const Problem &problem, const Operators &op, const Vector &weights,
              MethodResult &result) {
   const Handle<Vec> au = like(op.f);
@@ -23,6 +29,10 @@ void measure(const Problem &problem, const Operators &op, const Vector &weights,
 
   Outputs &outputs = result.outputs;
   result.residual = result.kkt.largest();
+  if (result.u_error > least_told)
+    result.reason += ", round-off of the stiffness leaves " +
+                     short_number(std::floor(-std::log10(result.u_error))) +
+                     " digits of the displacement";
   outputs.energy = image_count(problem.scene().mirrors) *
                    (quadratic / 2 - linear + op.imposed_energy + problem.spring_energy());
   outputs.kkt_residual = result.residual;
@@ -67,9 +77,12 @@ void require_residual(const MethodResult &result, double allowed) {
   if (!(result.residual <= allowed))
     throw failure("the KKT residual is " + short_number(result.residual) + ", above " +
                   short_number(allowed) +
-                  ": is the mesh or the parameter extreme? Try "
-                  "-hf_pc_factor_mat_solver_type mumps, or with an iterative -hf_ksp_type a "
-                  "smaller -hf_ksp_rtol");
+                  ", and refinement leaves that: with an iterative -hf_ksp_type lower "
+                  "-hf_ksp_rtol; else cells, or moduli, are too far apart in size");
+  if (!(result.u_error <= least_known))
+    throw failure("by round-off of the stiffness the displacement may be off by " +
+                  short_number(result.u_error) +
+                  " of itself: cells, or moduli, are too far apart in size");
 }
 
 Solved ContactMethod::kept(const Mu &mu, MethodResult &result) const {

@@ -1,6 +1,7 @@
 #include "rbvi/solve/linear.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/solve/vectors.hpp"
 
 #include <string_view>
 
@@ -63,9 +64,29 @@ void solve_linear(KSP ksp, Vec rhs, Vec x) {
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   RBVI_CALL(KSPGetConvergedReason(ksp, &reason));
   if (reason < 0)
-    throw failure(
-        std::string("the linear solver stopped with ") + KSPConvergedReasons[reason] +
-        ": is the stiffness matrix singular? Try -hf_pc_type lu or a tighter -hf_ksp_rtol");
+    throw failure(std::string("the linear solver stopped with ") + KSPConvergedReasons[reason] +
+                  (reason == KSP_DIVERGED_ITS
+                       ? ": allow more of them by -hf_ksp_max_it, or leave out "
+                         "-hf_ksp_type for a direct solver"
+                       : ": is the stiffness matrix singular?"));
+}
+
+double solve_refined(KSP ksp, Vec rhs, Vec x) {
+  constexpr int most_refinements = 2;
+  constexpr double enough = 1e-12;
+  solve_linear(ksp, rhs, x);
+  Mat a = nullptr;
+  RBVI_CALL(KSPGetOperators(ksp, &a, nullptr));
+  const Handle<Vec> left = like(rhs), correction = like(rhs);
+  for (int pass = 0;; ++pass) {
+    RBVI_CALL(MatMult(a, x, left.get()));
+    RBVI_CALL(VecAYPX(left.get(), -1, rhs));
+    if (norm(left.get()) <= enough * norm(rhs)) return 0;
+    if (pass == most_refinements) break;
+    solve_linear(ksp, left.get(), correction.get());
+    RBVI_CALL(VecAXPY(x, 1, correction.get()));
+  }
+  return norm(correction.get()) / norm(x);
 }
 
 } // namespace rbvi

@@ -133,7 +133,7 @@ void ScaledPart::make(const std::vector<Index> &dofs, Eigen::Ref<Matrix> columns
   columns.noalias() -= y_ * (phi_.asDiagonal() * y_(dofs, Eigen::all).transpose());
 }
 
-void ScaledPart::displacement(const Operators &op, const Vector &lambda, Vec u) {
+double ScaledPart::displacement(const Operators &op, const Vector &lambda, Vec u) {
   Matrix load(both_.size, 1);
   auto reaction = load.col(0).head(contact_.size);
   reaction = -(op.b.transpose() * lambda);
@@ -143,6 +143,7 @@ void ScaledPart::displacement(const Operators &op, const Vector &lambda, Vec u) 
   RBVI_CALL(MatDenseGetColumnVecRead(field.get(), 0, &column));
   RBVI_CALL(VecCopy(column, u));
   RBVI_CALL(MatDenseRestoreColumnVecRead(field.get(), 0, &column));
+  return 0;
 }
 
 } // namespace rbvi

@@ -1,6 +1,7 @@
 #include "rbvi/study/errors.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/largest.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/model/packed.hpp"
 #include "rbvi/mor/cones.hpp"
@@ -196,7 +197,7 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
       continue;
     }
     seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
-    errors.kkt_residual = std::max(errors.kkt_residual, answer->residual);
+    errors.kkt_residual = larger(errors.kkt_residual, answer->residual);
     Vector c = Vector::Zero(truths.coordinates.rows());
     if (embedding.size() > 0)
       c = embedding * answer->u;

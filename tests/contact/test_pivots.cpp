@@ -20,6 +20,13 @@ SparseMatrix constraints(Index rows, double skew) {
   return c;
 }
 
+/// A pivot moves its dof alone.
+SparseMatrix alone(const SparseMatrix &c) {
+  SparseMatrix moves(c.cols(), c.cols());
+  moves.setIdentity();
+  return moves;
+}
+
 std::vector<Index> range(Index first, Index count) {
   std::vector<Index> list;
   for (Index i = 0; i < count; ++i)
@@ -53,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(SymmetricAndNot, PivotBlockOf, testing::Values(0.0, 0.3
 TEST_P(PivotBlockOf, SolvesAndTies) {
   const SparseMatrix c = constraints(6, GetParam());
   const std::vector<Index> pivots = range(1, 6);
-  const PivotBlock block(c, pivots);
+  const PivotBlock block(c, pivots, alone(c));
   expect_solves(block, c, pivots);
   expect_ties(block, c, pivots, {0, 7});
 }
@@ -68,7 +75,7 @@ TEST(PivotBlock, OfConstraintsThatSeeOnePivotEach) {
   c.insert(2, 7) = 0.5;
   c.insert(2, 9) = 3;
   const std::vector<Index> pivots{5, 3, 7};
-  const PivotBlock block(c, pivots);
+  const PivotBlock block(c, pivots, alone(c));
   expect_solves(block, c, pivots);
   expect_ties(block, c, pivots, {9});
 }
@@ -79,7 +86,7 @@ TEST(PivotBlock, RefusesConstraintsThatDependOnEachOther) {
     c.insert(row, 3) = 1;
     c.insert(row, 4) = 2;
   }
-  EXPECT_THROW(PivotBlock(c, {3, 4}), Error);
+  EXPECT_THROW(PivotBlock(c, {3, 4}, alone(c)), Error);
 }
 
 } // namespace

@@ -177,15 +177,5 @@ TEST(Uzawa, StoppingEarlyIsAnError) {
   }
 }
 
-TEST(KktResidual, IsNoNumberWhereOneOfItsPartsIsNone) {
-  for (double KktResidual::*part :
-       {&KktResidual::stationarity, &KktResidual::feasibility, &KktResidual::complementarity,
-        &KktResidual::sign, &KktResidual::friction}) {
-    KktResidual kkt{1, 1, 1, 1, 1};
-    kkt.*part = std::nan("");
-    EXPECT_TRUE(std::isnan(kkt.largest()));
-  }
-}
-
 } // namespace
 } // namespace rbvi::high_fidelity_test

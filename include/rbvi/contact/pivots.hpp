@@ -16,6 +16,11 @@ struct ContactDofs {
   std::vector<Index> node; ///< per contact dof: its node, over all interfaces
   /// Per row of B: its node; of a macro-edge the one nearest to its middle.
   std::vector<Index> row_node;
+  /// Per contact dof, as a row, the function of the dofs that a pivot there moves. On triangles of
+  /// degree 2 the hat of its vertex: the integrals of the vertex's own function against the hats
+  /// of multipliers are a matrix without a bounded inverse, those of the hat are a mass matrix.
+  /// Else the dof alone.
+  SparseMatrix moves;
 };
 ContactDofs contact_dofs(const Contact &contact);
 
@@ -45,14 +50,14 @@ private:
   std::unique_ptr<Lu> lu_;
 };
 
-/// C_P, the columns of the pivots, and the other columns C_N of some constraints.
+/// C_P, the columns of what the pivots move, and the other columns C_N of some constraints.
 class PivotBlock {
 public:
   /// Nothing.
   PivotBlock() = default;
-  /// `c`: constraints x contact dofs; `pivots`: one of these dofs for each. Throws failure where
-  /// C_P is singular.
-  PivotBlock(const SparseMatrix &c, const std::vector<Index> &pivots);
+  /// `c`: constraints x contact dofs; `pivots`: one of these dofs for each; `moves`: as
+  /// ContactDofs. Throws failure where C_P is singular.
+  PivotBlock(const SparseMatrix &c, const std::vector<Index> &pivots, const SparseMatrix &moves);
   /// C_P^-1 right.
   Vector solve(const Vector &right) const { return factor_.solve(right); }
   /// C_P^-T right.

@@ -6,7 +6,8 @@
 //
 // and beta is found such that they are relaxed at the answer (method/balance.hpp): then they carry
 // no force, forces balance without them, and u is that of A u + B^T lambda = F with the rigid
-// motion that contact leaves. theta is that of the first exact term of a on the body, else 1.
+// motion that contact leaves. theta is that of the exact term of a on the body that varies least
+// with mu, else 1.
 #pragma once
 
 #include "rbvi/fem/dofs.hpp"

@@ -3,7 +3,7 @@
 
 #include "rbvi/contact/interface.hpp"
 #include "rbvi/method/answer.hpp"
-#include "rbvi/method/node_laws.hpp"
+#include "rbvi/method/residual.hpp"
 
 #include <optional>
 #include <string>
@@ -39,9 +39,6 @@ struct Relaxed {
   Vector beta{};
   ReducedAnswer before{};
 };
-
-/// What is left of the conditions of a query that has an answer: ReducedAnswer::residual.
-constexpr double largest_left = 1e-8;
 
 /// By which iteration.
 enum class OnlineMethod {

@@ -74,13 +74,13 @@ private:
 struct KktTerms {
   const Vector &au, &btx, &f; ///< A u, B^T x
   const Vector &bu, &g, &x;   ///< B u
-  Index free = 0;             ///< so many of the last rows are equations: B u = g
-  double terms = 0;           ///< the largest of |B| |u|, which cancel in B u
+  Index equations = 0;        ///< so many of the last rows have B u = g
+  double displacement = 0;    ///< what cancels in B u: ContactRemainders::displacement, by rows
+  double stiffness = 0;       ///< what cancels in A u: |diag(A) u|
 };
 
-/// Relative residual of A u + B^T x = f, B u <= g, x . (B u - g) = 0 for x >= 0: the largest of
-/// |A u + B^T x - f| / (|f| + |B^T x|), max (B u - g)_+ / s and |x . (B u - g)| / (s sum |x|), with
-/// s = max(|g|, |B u|, 1e-4 terms) in the maximum norm.
+/// KktResidual::largest() of A u + B^T x = f, B u <= g, x . (B u - g) = 0 for x >= 0, rows of
+/// weight 1.
 double kkt_residual(const KktTerms &answer);
 
 } // namespace rbvi

@@ -17,6 +17,7 @@
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/core/scene.hpp"
 #include "rbvi/element/output_cells.hpp"
+#include "rbvi/method/residual.hpp"
 #include "rbvi/model/chebyshev.hpp"
 #include "rbvi/model/nitsche_model.hpp"
 
@@ -99,7 +100,7 @@ struct SelfCheck {
   int at_boundary = 0; ///< of the queries, at corners and faces
   double scale = 0;    ///< the largest component of the displacement of the contact region
   /// All were answered, with residuals of round-off.
-  bool answered() const { return unanswered == 0 && residual.value <= 1e-10; }
+  bool answered() const { return unanswered == 0 && residual.value <= residual_limit; }
   /// Bodies do not penetrate, and friction is bounded, but for what a law on weighted gaps and
   /// tractions leaves between nodes: a few parts in a thousand of these scales.
   bool admissible() const { return penetration.value <= 2e-2 * scale && friction.value <= 2e-2; }

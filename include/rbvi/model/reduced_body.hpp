@@ -67,6 +67,7 @@ public:
   Matrix free_motions() const; ///< of bodies that contact alone holds, n x k
   Matrix stiffness() const;    ///< A_N, n x n
   Vector times(const Vector &u) const;
+  Vector diagonal() const; ///< of A_N, of the part that mu scales as a whole where there is one
 
   /// R without the factor sqrt(scale()) is another one where root_number() is.
   double scale() const { return scale_; }

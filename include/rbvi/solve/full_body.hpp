@@ -17,8 +17,9 @@ public:
   using Compliance::Compliance;
   /// What the loads alone move the contact dofs by. Collective.
   virtual Vector free(const Operators &op) = 0;
-  /// u of A u = F - B^T lambda. Collective.
-  virtual void displacement(const Operators &op, const Vector &lambda, Vec u) = 0;
+  /// u of A u = F - B^T lambda. Returns how far u may be off by round-off, as solve_refined().
+  /// Collective.
+  virtual double displacement(const Operators &op, const Vector &lambda, Vec u) = 0;
 };
 
 /// How long the columns of a compliance last.
@@ -46,7 +47,7 @@ public:
 
   Matrix moved(const SparseMatrix &b, const std::vector<Index> &which) override;
   Vector free(const Operators &op) override;
-  void displacement(const Operators &op, const Vector &lambda, Vec u) override;
+  double displacement(const Operators &op, const Vector &lambda, Vec u) override;
 
   /// For contact that is nodal (contact/interface.hpp).
   std::optional<NodalCompliance> nodal{};

@@ -22,6 +22,7 @@
 #include "rbvi/fem/problem.hpp"
 #include "rbvi/method/answer.hpp"
 #include "rbvi/method/nonlinear.hpp"
+#include "rbvi/method/residual.hpp"
 #include "rbvi/method/uzawa.hpp"
 #include "rbvi/par/groups.hpp"
 #include "rbvi/solve/nitsche.hpp"
@@ -52,18 +53,6 @@ struct HfOptions {
   /// HfSolution::to_other, from further starts: by active sets on the multipliers, at small
   /// deformations.
   bool looks_for_others = false;
-};
-
-/// Relative residuals of the optimality system.
-struct KktResidual {
-  double stationarity = 0; ///< |A u + B^T l - F| / (|F| + |B^T l|)
-  double feasibility = 0;  ///< max (B u - G)_+ / weight, over max s / weight; normal rows, of which
-                           ///< s = max(|G|, |B u|, 1e-3 weight max |u|); tangential: |G|, |B u|
-  double complementarity = 0; ///< sum |l (B u - G)| / (|l| |s|)
-  double sign = 0;            ///< -min l / max |l|, l the normal multipliers
-  double friction = 0; ///< max (|l_tau| - bound)_+ / max |l|, sum (bound |slip| - l_tau . slip)
-                       ///< over |l| |s|: the larger
-  double largest() const;
 };
 
 /// u: in natural order, on every rank, without the motion, with the values that boundaries impose;

@@ -24,5 +24,8 @@ void set_operator(KSP ksp, Mat a, Ordering ordering = Ordering::automatic);
 
 /// x = A^-1 rhs, throwing failure when KSP does not converge. Collective.
 void solve_linear(KSP ksp, Vec rhs, Vec x);
+/// The same refined, where the residual is not of round-off: at most twice. Returns how far x may
+/// be off where round-off of A u leaves more, |last correction| / |x|; else 0. Collective.
+double solve_refined(KSP ksp, Vec rhs, Vec x);
 
 } // namespace rbvi

@@ -17,8 +17,9 @@ const std::vector<std::string> &hf_contact_names();
 /// measured on it.
 struct MethodResult : HfSolution {
   Handle<Vec> free_u;
-  Vector w;         ///< of solve_active_set: H lambda + q
-  Matrix pressures; ///< of Nitsche's method: NitscheSolution::pressures
+  Vector w;           ///< of solve_active_set: H lambda + q
+  Matrix pressures;   ///< of Nitsche's method: NitscheSolution::pressures
+  double u_error = 0; ///< FullBody::displacement
   bool converged = false;
 };
 

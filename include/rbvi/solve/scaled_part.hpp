@@ -35,7 +35,7 @@ public:
 
   Matrix moved(const SparseMatrix &b, const std::vector<Index> &which) override;
   Vector free(const Operators &) override { return Vector::Zero(size()); } ///< nothing loads it
-  void displacement(const Operators &op, const Vector &lambda, Vec u) override;
+  double displacement(const Operators &op, const Vector &lambda, Vec u) override;
 
 private:
   void make(const std::vector<Index> &dofs, Eigen::Ref<Matrix> columns) override;

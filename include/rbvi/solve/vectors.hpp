@@ -38,6 +38,7 @@ public:
   LocalValues(const LocalValues &) = delete;
   LocalValues &operator=(const LocalValues &) = delete;
   Eigen::Map<Vector> &get() { return values_; }
+  const Eigen::Map<Vector> &get() const { return values_; }
 
 private:
   Vec v_;
