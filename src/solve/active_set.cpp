@@ -1,6 +1,7 @@
 #include "rbvi/method/lcp.hpp"
 #include "rbvi/method/several_answers.hpp"
 #include "rbvi/solve/methods.hpp"
+#include "rbvi/solve/vectors.hpp"
 
 #include <algorithm>
 
@@ -16,6 +17,19 @@ template <class Found> void take(Found &&found, MethodResult &result) {
   result.columns = found.columns;
   result.converged = found.converged;
   result.reason = std::move(found.reason);
+}
+
+/// u of A u = F - B^T lambda by that of an earlier lambda: where u is large beside its round-off, B
+/// u stays as exact as the change is small.
+void move_by_change(FullBody &body, const Operators &op, const MethodResult &before,
+                    MethodResult &result) {
+  const Handle<Vec> no_load = like(op.f);
+  RBVI_CALL(VecZeroEntries(no_load.get()));
+  Operators without_load = op;
+  without_load.f = no_load.get();
+  body.displacement(without_load, result.lambda - before.lambda, result.free_u.get());
+  RBVI_CALL(VecAXPY(result.free_u.get(), 1, before.free_u.get()));
+  result.u_error = before.u_error;
 }
 
 } // namespace
@@ -42,7 +56,10 @@ MethodResult solve_active_set(FullBody &body, const Operators &op, const Vector 
     result.start = std::move(found.start);
     take(std::move(found), result);
   }
-  if (result.lambda.size() > 0) // else not converged: there is no displacement either
+  if (result.lambda.size() == 0) return result; // not converged: there is no displacement either
+  if (options.refined != nullptr)
+    move_by_change(body, op, *options.refined, result);
+  else
     result.u_error = body.displacement(op, result.lambda, result.free_u.get());
   return result;
 }

@@ -137,7 +137,7 @@ MethodResult Condensed::refined(FullBody &body, const ContactTask &task) {
   };
   result.kkt = residual();
   // H has the round-off of A^-1, which iterative refinement takes out.
-  options = {false, false, Vector::Zero(op.g.size())};
+  options = {false, false, Vector::Zero(op.g.size()), &result};
   for (int pass = 0; pass < most_refinements && !(result.kkt.largest() <= refined_above); ++pass) {
     options.correction +=
         op.g - op.b * restrict_to(problem_.trace(), result.free_u.get()) - result.w;

@@ -30,6 +30,8 @@ struct ActiveSetOptions {
   bool by_rule = true;           ///< friction: friction_answer
   bool looks_for_others = false; ///< of HfOptions
   Vector correction{};           ///< is added to q; empty: nothing is
+  /// With it, the answer that it is of: the change of its multipliers moves its displacement.
+  const MethodResult *refined = nullptr;
 };
 /// Active sets on the multipliers of a body that is set to `op`. `start`: FrictionResult::start of
 /// a nearby problem; empty: cold. Collective.
