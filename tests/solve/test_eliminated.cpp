@@ -1,6 +1,7 @@
 // Contact by eliminated displacements is contact by condensed multipliers.
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/scene/case.hpp"
 #include "rbvi/solve/contact_cost.hpp"
 #include "rbvi/solve/eliminated.hpp"
 #include "tests/catalogue.hpp"
@@ -46,6 +47,25 @@ TEST(Eliminated, AgreesOnObstacles) {
   for (const std::string lumped : {"yes", "no"})
     for (const int refine : {0, 1})
       expect_agreement("membrane_obstacle", {{"lumped", lumped}}, set, refine);
+}
+
+/// The integrals of the functions of vertices of degree 2 against hats are no mass matrix.
+TEST(Eliminated, AgreesOnARoofUnderDegreeTwo) {
+  const Scene scene = make_scene(
+      read_case("rbvi: 1\nphysics: membrane\nmesh: {built_in: square_with_disc, edges: 24, degree: "
+                "2}\nparameters: {height: {range: [-0.1, 0.1], default: 0}}\n"
+                "imposed: {rim: {at: boundary, u: 0}}\nloads: {push: {at: all, force: -25}}\n"
+                "contact: {rock: {at: obstacle, lumped: no, "
+                "above: height - 0.3 * (abs(x + 0.03) + abs(y))}}\n",
+                "case.yaml"),
+      {});
+  Problem problem(PETSC_COMM_WORLD, scene, {});
+  HfOptions condensed, eliminated;
+  condensed.contact = HfContact::condensed;
+  eliminated.contact = HfContact::eliminated;
+  HighFidelity one(problem, condensed), other(problem, eliminated);
+  for (const double height : {-0.1, -0.05, 0.0, 0.1})
+    expect_equal(other.solve({height}), one.solve({height}));
 }
 
 TEST(Eliminated, AgreesOnSupportsUnderEveryLaw) {

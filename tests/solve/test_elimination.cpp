@@ -15,11 +15,19 @@ constexpr Index dofs = 23;
 struct Constraints {
   SparseMatrix c{dofs - 2, dofs};
   std::vector<Index> pivots;
+  double middles = 0; ///< what the pivots at the ends move the dofs beside them by
+  SparseMatrix moves() const {
+    SparseMatrix result(dofs, dofs);
+    result.setIdentity();
+    result.coeffRef(1, 0) = result.coeffRef(dofs - 2, dofs - 1) = middles;
+    return result;
+  }
 };
 
 /// `side`: the entries beside the pivot; `skew` takes its symmetry.
-Constraints constraints(double side, double skew) {
+Constraints constraints(double side, double skew, double middles) {
   Constraints all;
+  all.middles = middles;
   for (Index i = 0; i < all.c.rows(); ++i) {
     all.c.insert(i, i) = side + skew;
     all.c.insert(i, i + 1) = 4;
@@ -54,7 +62,7 @@ struct Shared {
         own.insert(static_cast<Index>(k), entry.col()) = entry.value();
       pivots.push_back(all.pivots[rows[k]]);
     }
-    return {layout, own, pivots};
+    return {layout, own, pivots, all.moves()};
   }
   /// This rank's part of a displacement.
   Handle<Vec> distributed(const Vector &u) const {
@@ -68,29 +76,30 @@ struct Shared {
 };
 
 struct Entries {
-  double side, skew;
+  double side, skew, middles = 0;
 };
 
 class EliminationOf : public testing::TestWithParam<Entries> {};
 INSTANTIATE_TEST_SUITE_P(OneEntrySymmetricAndNot, EliminationOf,
-                         testing::Values(Entries{0, 0}, Entries{1, 0}, Entries{1, 0.3}));
+                         testing::Values(Entries{0, 0}, Entries{1, 0}, Entries{1, 0.3},
+                                         Entries{1, 0, 0.5}));
 
 TEST_P(EliminationOf, MeetsTheConstraintsAndItsTranspose) {
-  const Constraints all = constraints(GetParam().side, GetParam().skew);
+  const Constraints all = constraints(GetParam().side, GetParam().skew, GetParam().middles);
   const Shared shared(all.pivots);
   const Elimination z = shared.eliminate(all);
   EXPECT_EQ(z.count(), all.c.rows());
 
   Vector u = Vector::LinSpaced(dofs, -1, 2), r = Vector::LinSpaced(dofs, 3, 1);
   const Vector right = Vector::LinSpaced(all.c.rows(), 3, -4);
-  const Matrix c = all.c, c_p = c(Eigen::all, all.pivots);
+  const Matrix c = all.c, t = Matrix(all.moves())(all.pivots, Eigen::all), c_p = c * t.transpose();
   const Handle<Vec> extended = shared.distributed(u), reduced = shared.distributed(r);
   u(all.pivots).setZero();
-  u(all.pivots) = c_p.lu().solve(right - c * u).eval();
+  u += t.transpose() * c_p.lu().solve(right - c * u).eval();
   z.extend(right(shared.rows), extended.get());
   EXPECT_LE(shared.difference(extended.get(), u), 1e-13 * u.norm());
 
-  const Vector y = c_p.transpose().lu().solve(Vector(r(all.pivots)));
+  const Vector y = c_p.transpose().lu().solve(Vector(t * r));
   EXPECT_LE((z.multipliers(reduced.get()) - y(shared.rows)).norm(), 1e-14 * y.norm());
   z.reduce(reduced.get());
   r -= c.transpose() * y;
