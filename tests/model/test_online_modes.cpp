@@ -82,7 +82,9 @@ TEST(FreeModes, KktResidualSeesAnOpenGap) {
   const Vector bu{{0, 4}}, g{{1, 4}}, x{{0, -7}};
   EXPECT_EQ(kkt_residual({two, 0 * two, two, bu, g, x, 1}), 0);
   EXPECT_EQ(kkt_residual({two, 0 * two, two, bu, g, x, 2}), 0.25);
-  EXPECT_EQ(kkt_residual({two, 0 * two, two, bu.reverse(), g.reverse(), x.reverse(), 1}), 0.25);
+  const Vector none = Vector::Zero(2);
+  EXPECT_EQ(kkt_residual({two, 0 * two, two, bu.reverse(), g.reverse(), none, 1}), 0.25);
+  EXPECT_EQ(kkt_residual({two, 0 * two, two, g, g, x.reverse(), 1}), 1) << "a pull";
 }
 
 /// Node 0 takes the pressure of the first generator, node 1 that of the last function.
