@@ -4,6 +4,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/imposed.hpp"
+#include "rbvi/element/output_cells.hpp"
 
 namespace rbvi {
 
