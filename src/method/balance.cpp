@@ -215,75 +215,157 @@ Balance accelerated(Vector beta, const Lengths &lengths) {
   return result;
 }
 
-/// Newton's method with slopes by differences, its steps halved until the excess falls.
-class ByDifferences {
+/// The path along which what the springs bear at first is let go: points (beta, s) with
+///
+///   excess(beta) = (1 - s) excess(first),    s = 0 at first, and 1 where forces balance,
+///
+/// the balance under a load between two that can be balanced. Of a piecewise affine excess it is a
+/// chain of lines. It is followed by its length, so that it may turn back in s, past the plateaus
+/// and corners about which Newton's method turns for ever. Beta in parts of |excess(first)|: of
+/// loads that are proportional the same path.
+class Path {
 public:
-  ByDifferences(Balance from, const Lengths &lengths)
-      : found_(std::move(from)), lengths_(lengths) {}
+  Path(Vector first, int solves, const Lengths &lengths)
+      : lengths_(lengths), first_(std::move(first)), motions_(first_.size()) {
+    found_.solves = solves;
+  }
   Balance run() {
-    constexpr int most_steps = 30;
-    constexpr double tolerance = 1e-12, round_off = 1e-10;
-    bool there = asks_there(); // the last one asked for is the one found
-    for (int k = 0; k < most_steps && there && !balances(found_, scale_, tolerance); ++k)
-      if (!step()) {
-        there = asks_there();
-        break;
+    constexpr int most_solves = 3000;
+    constexpr double first_length = 0.1, at_corner = 1e-4, farthest = 1e8;
+    here_ = Vector::Zero(motions_ + 1);
+    if (!begin()) return std::move(found_);
+    double length = first_length;
+    bool going = set_direction();
+    while (going && found_.solves < most_solves && here_.norm() < farthest) {
+      Vector next = here_ + length * direction_;
+      const bool ends = next[motions_] >= 1;
+      if (ends) next = here_ + (1 - here_[motions_]) / direction_[motions_] * direction_;
+      const Vector beyond = next;
+      const Matrix slopes = slopes_;
+      const int steps = correct(next, ends, length);
+      if (found_.converged) return std::move(found_);
+      if (steps == 0 && length > at_corner) {
+        slopes_ = slopes;
+        length /= 4;
+        continue;
       }
-    found_.converged = there && balances(found_, scale_, round_off);
+      // Across a corner the path may turn by more than a right angle.
+      here_ = steps > 0 ? next : beyond;
+      length *= steps == 0 ? 4 : steps <= 2 ? 2 : 1;
+      if (here_[motions_] < -at_corner && !turned_) { // on a plateau both ways are as good
+        turned_ = true;
+        side_ = -side_;
+        here_.setZero();
+        length = first_length;
+      }
+      going = set_direction();
+    }
     return std::move(found_);
   }
 
 private:
-  /// None where the contact problem has no answer.
-  std::optional<Vector> excess_at(const Vector &beta) {
-    ++found_.solves;
-    const std::optional<SpringState> state = attempt(lengths_, beta);
-    if (!state) return std::nullopt;
-    scale_ = state->scale;
-    return Vector(state->lengths - beta);
-  }
-  bool asks_there() {
-    const std::optional<Vector> excess = excess_at(found_.beta);
-    if (excess) found_.excess = *excess;
-    return excess.has_value();
-  }
-  bool step() {
-    constexpr double difference = 1e-7, shortest = 1e-3;
-    const double size = difference * scale_;
-    Matrix slope(found_.beta.size(), found_.beta.size());
-    for (Index j = 0; j < slope.cols(); ++j) {
-      Vector moved = found_.beta;
-      moved[j] += size;
-      const std::optional<Vector> excess = excess_at(moved);
-      if (!excess) return false;
-      slope.col(j) = (*excess - found_.excess) / size;
-    }
-    const Vector newton = -slope.fullPivLu().solve(found_.excess);
-    double part = newton.allFinite() ? 1 : 0;
-    while (part > shortest && !falls(part, newton))
-      part /= 2;
-    return part > shortest;
-  }
-  bool falls(double part, const Vector &newton) {
-    const Vector beta = found_.beta + part * newton;
-    const std::optional<Vector> excess = excess_at(beta);
-    if (!excess || !(excess->norm() <= (1 - 0.1 * part) * found_.excess.norm())) return false;
-    found_.beta = beta;
-    found_.excess = *excess;
+  static constexpr double difference = 1e-7, near = 1e-8;
+
+  bool begin() {
+    const std::optional<Vector> excess = excess_at(here_);
+    if (!excess || !(excess->norm() > 0)) return false;
+    unit_ = excess->norm();
+    let_go_ = *excess / unit_;
     return true;
   }
+  /// None where the contact problem has no answer.
+  std::optional<Vector> excess_at(const Vector &point) {
+    ++found_.solves;
+    found_.beta = first_ + unit_ * point.head(motions_);
+    const std::optional<SpringState> state = attempt(lengths_, found_.beta);
+    if (!state) return std::nullopt;
+    found_.excess = state->lengths - found_.beta;
+    scale_ = state->scale;
+    slope_ = state->slope;
+    return found_.excess;
+  }
+  /// How far off the path, in parts of what is let go.
+  std::optional<Vector> off_path(const Vector &point) {
+    std::optional<Vector> excess = excess_at(point);
+    if (excess) *excess = *excess / unit_ - (1 - point[motions_]) * let_go_;
+    return excess;
+  }
+  /// The way on from here: what the slopes leave free, always with the same side to its left.
+  bool set_direction() {
+    slopes_.resize(motions_, motions_ + 1);
+    const std::optional<Vector> off = off_path(here_);
+    if (!off) return false;
+    slopes_.col(motions_) = let_go_;
+    const bool known = slope_.size() > 0;
+    if (known) slopes_.leftCols(motions_) = slope_;
+    for (Index j = 0; j < motions_ && !known; ++j) {
+      Vector moved = here_;
+      moved[j] += difference;
+      const std::optional<Vector> there = off_path(moved);
+      if (!there) return false;
+      slopes_.col(j) = (*there - *off) / difference;
+    }
+    const Eigen::JacobiSVD<Matrix, Eigen::FullPivHouseholderQRPreconditioner> svd(
+        slopes_, Eigen::ComputeFullV);
+    direction_ = svd.matrixV().col(motions_);
+    const double turn = bordered(direction_).determinant();
+    if (side_ == 0) side_ = direction_[motions_] < 0 ? -turn : turn;
+    if (turn * side_ < 0) direction_ = -direction_;
+    return true;
+  }
+  Matrix bordered(const Vector &last) const {
+    Matrix rows(motions_ + 1, motions_ + 1);
+    rows << slopes_, last.transpose();
+    return rows;
+  }
+  /// Back onto the path, across it or, at its end, with s = 1; no farther than that. Returns the
+  /// solves, 0: in vain.
+  int correct(Vector &point, bool ends, double farthest) {
+    constexpr double tolerance = 1e-12, round_off = 1e-10;
+    const int most = ends ? 20 : 6;
+    const Vector across = ends ? Vector::Unit(motions_ + 1, motions_) : direction_;
+    const Vector predicted = point;
+    std::optional<Vector> off = off_path(point);
+    for (int solves = 1; off; ++solves) {
+      if (ends && balances(found_, scale_, solves < most ? tolerance : round_off)) {
+        found_.converged = true;
+        return solves;
+      }
+      if (!ends && off->norm() <= near) return solves;
+      if (solves == most) return 0;
+      Vector right = Vector::Zero(motions_ + 1);
+      right.head(motions_) = -*off;
+      const Vector step = bordered(across).fullPivLu().solve(right);
+      point += step;
+      if (!((point - predicted).norm() <= farthest)) return 0;
+      const std::optional<Vector> next = off_path(point);
+      if (!next) return 0;
+      if (step.norm() > 0) // Broyden's: of one corner the slopes beyond it
+        slopes_ += (*next - *off - slopes_ * step) * step.transpose() / step.squaredNorm();
+      off = next;
+    }
+    return 0;
+  }
 
-  Balance found_;
   const Lengths &lengths_;
-  double scale_ = 0;
+  const Vector first_;
+  const Index motions_;
+  Balance found_;
+  Vector here_, direction_, let_go_;
+  Matrix slopes_, slope_; ///< of off_path by the point; those that are known
+  double unit_ = 1, scale_ = 0, side_ = 0;
+  bool turned_ = false;
 };
 
 } // namespace
 
 Balance find_balance(Vector beta, const Lengths &lengths) {
-  Balance result = accelerated(std::move(beta), lengths);
+  Balance result = accelerated(beta, lengths);
   if (result.converged || result.flies) return result;
-  return ByDifferences(std::move(result), lengths).run();
+  Balance along_path = Path(std::move(beta), result.solves, lengths).run();
+  if (along_path.converged) return along_path;
+  result.solves = along_path.solves;
+  return result;
 }
 
 } // namespace rbvi

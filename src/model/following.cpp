@@ -79,12 +79,16 @@ ReducedAnswer FollowingSolver::solve(const FullMu &mu, Relaxed relaxed) {
   answer.mu = mu;
   if (looks_for_others_) answer.to_other = distance_from_rest(problem, found, options);
   answer.contact = std::move(followed.operators);
-  assemble_nodal(contact_, mu, {found.state}, followed.at_dual_dofs(found.x), answer.contact);
+  const bool held_by_contact = model_.body.springs.size() > 0; // then B is asked for at the answer
+  if (held_by_contact)
+    assemble(contact_, mu, {found.state}, answer.contact);
+  else
+    assemble_nodal(contact_, mu, {found.state}, followed.at_dual_dofs(found.x), answer.contact);
   answer.reaction = std::move(found.reaction);
   answer.energy = 0.5 * (answer.reaction.dot(problem.free - found.state) - load.squaredNorm());
   answer.u = evaluated_.moved_by(at_mu_, answer.reaction);
   if (unloaded.size() > 0) answer.u += unloaded;
-  if (model_.body.springs.size() > 0) {
+  if (held_by_contact) {
     const Matrix motions = at_mu_.free_motions();
     const Matrix held =
         evaluated_.rows() * (answer.contact.b * Matrix(model_.contact.trace * motions));

@@ -189,13 +189,43 @@ private:
   Matrix coupling_ = Matrix{{1, 0.3}, {-0.2, 1}};
 };
 
-TEST(Balance, IsFoundByDifferencesBesideContactProblemsWithoutAnswer) {
+TEST(Balance, IsFoundBesideContactProblemsWithoutAnswer) {
   Stiffening lengths(1.2);
   const Balance found = find_balance(Vector::Zero(2), std::ref(lengths));
   ASSERT_TRUE(found.converged);
   EXPECT_EQ(found.solves, lengths.solves);
   EXPECT_EQ(found.beta, lengths.last) << "the last one asked for";
   EXPECT_LE((lengths(found.beta).lengths - found.beta).norm(), 1e-10);
+}
+
+/// One motion along which forces are constant on plateaus between steep parts, and turn back once:
+/// Newton's steps from plateau to plateau never end.
+double bent(double x) {
+  const std::vector<std::pair<double, double>> corners{
+      {-2, -2},   {-0.5, -0.4}, {0, -0.4},  {0.01, 0.3},   {0.3, 0.3}, {0.31, 0.1},
+      {0.6, 0.1}, {0.602, 0.9}, {1.5, 0.9}, {1.505, 1.01}, {3, 1.2}};
+  std::size_t k = 1;
+  while (k + 2 < corners.size() && x > corners[k].first)
+    ++k;
+  const auto [a, fa] = corners[k - 1];
+  const auto [b, fb] = corners[k];
+  return fa + (x - a) / (b - a) * (fb - fa);
+}
+
+TEST(Balance, IsFoundPastPlateausAndAWayBack) {
+  for (const double load : {0.05, 0.5, 0.95, 1.1}) {
+    Vector first;
+    for (const double scale : {1.0, 1e-6, 3e5}) { // proportional loads, proportional answers
+      const Balance found = find_balance(Vector::Zero(1), [&](const Vector &beta) {
+        const double force = bent(beta[0] / scale);
+        return SpringState{beta + Vector::Constant(1, scale * (load - force)), scale};
+      });
+      ASSERT_TRUE(found.converged) << load << ' ' << scale;
+      EXPECT_NEAR(bent(found.beta[0] / scale), load, 1e-10) << scale;
+      if (first.size() == 0) first = found.beta;
+      EXPECT_NEAR(found.beta[0] / scale, first[0], 1e-9) << load << ' ' << scale;
+    }
+  }
 }
 
 TEST(Balance, IsNotFoundWhereTheContactProblemHasNoAnswer) {

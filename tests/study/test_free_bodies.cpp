@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <tuple>
 
 #include <unistd.h>
 
@@ -202,6 +203,57 @@ TEST(FreeBodies, AModelOfAPushedBlockComesBackFromItsFile) {
     const Outputs outputs = online.outputs(mu, online.solve(mu));
     EXPECT_NEAR(outputs.normal_force.value() / force, 1, 1e-6) << young;
     EXPECT_NEAR(outputs.named.front().value / -force, 1, 1e-6) << "down, as it is pushed";
+  }
+}
+
+/// Where the condition is that of the deformed body: B is at hand at every answer, whatever steps
+/// it was found by.
+TEST(FreeBodies, AReducedBodyThatMovesFarIsInBalance) {
+  const std::string disk = "{disk: {center: [0, -3], radius: 2}}",
+                    level = "{level_set: 'hypot(x, y + 3) - 2'}",
+                    pushed = "imposed: {top: {at: top, ux: 0, force_y: -press}}\n",
+                    loaded = "imposed: {top: {at: top, ux: 0}}\n"
+                             "loads: {top: {at: top, pressure: press/2}}\n"; // 2 m long
+  for (const auto &[against, held, friction] :
+       {std::tuple{disk, pushed, std::string()},
+        {level, loaded, std::string(", friction: {coulomb: 0.2}")}}) {
+    SCOPED_TRACE(against + held + friction);
+    const std::string text = "rbvi: 1\nphysics: plane_strain\n"
+                             "mesh: {built_in: half_disc, angle: 45, edges: 8, degree: 1}\n"
+                             "parameters: {press: {range: [0.05, 1], default: 0.3}}\n"
+                             "materials: {rubber: {at: all, E: 24, nu: 0.3}}\n" +
+                             held + "contact: {tyre: {at: contact, against: " + against +
+                             ", kinematics: large" + friction + "}}\n";
+    Reduced made(make_scene(read_case(text, "tyre.yaml"), {}), "grid:3");
+    made.reduce(testing_reduced::everything());
+    const HfSolution full = HighFidelity(made.problem, {}).solve({0.4});
+    if (rank_of(PETSC_COMM_WORLD) != 0) continue;
+    OnlineSolver online(made.model);
+    const Outputs outputs = online.outputs({0.4}, online.solve({0.4}));
+    EXPECT_NEAR(outputs.reaction.value(), 0.4, 1e-8);
+    EXPECT_NEAR(full.outputs.reaction.value(), 0.4, 1e-8);
+    EXPECT_NEAR(outputs.energy.value(), full.outputs.energy.value(),
+                1e-6 * std::abs(full.outputs.energy.value()));
+  }
+}
+
+/// Nothing but the load acts, so that all answers are proportional to it.
+TEST(FreeBodies, AnswersAreProportionalToTheLoad) {
+  const std::string text =
+      "rbvi: 1\nphysics: plane_strain\nmesh: {built_in: two_blocks, degree: 1}\n"
+      "parameters: {load: {range: [0.1, 1000], default: 1}, c: {range: [0.05, 0.6], default: "
+      "0.2}}\n"
+      "materials:\n  soft: {at: upper, E: 10, nu: 0.45}\n  hard: {at: lower, E: 20, nu: 0.1}\n"
+      "imposed: {bottom: {at: bottom, ux: 0, uy: 0}}\nloads: {top: {at: top, pressure: load}}\n"
+      "contact: {seat: {at: slave, against: master, multiplier: p0, friction: {coulomb: c}}}\n";
+  Problem problem(PETSC_COMM_WORLD, make_scene(read_case(text, "blocks.yaml"), {}), {});
+  HighFidelity solver(problem, {});
+  for (const double c : {0.05, 0.2, 0.4, 0.6}) {
+    const Vector one = solver.solve({1, c}).lambda;
+    EXPECT_GT(one.tail(one.size() / 2).cwiseAbs().maxCoeff(), 1e-3) << "it spreads";
+    for (const double load : {0.1, 0.24, 0.7, 1000.0})
+      EXPECT_LE((solver.solve({load, c}).lambda / load - one).cwiseAbs().maxCoeff(), 1e-9)
+          << load << ' ' << c;
   }
 }
 

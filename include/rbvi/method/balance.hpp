@@ -7,8 +7,8 @@
 // Without friction lengths is a contraction, piecewise affine: a proximal step of the energy over
 // the free motions. Newton's method where the slope of the piece is known, else Anderson's
 // acceleration with as many images as motions, which is the same after as many steps. With friction
-// neither need come to an end: then slopes are taken by differences, and steps halved until the
-// excess falls.
+// neither need come to an end: where all nodes slip, forces along the foot do not change with beta
+// at all. Then the path is followed along which what the springs bear at the first beta is let go.
 #pragma once
 
 #include "rbvi/method/node_laws.hpp"
@@ -32,8 +32,8 @@ struct Balance {
 };
 
 /// `lengths`: solves the contact problem with springs relaxed at beta; called with the last beta
-/// last. What it throws at the first one passes; elsewhere the step is shortened. Converged to
-/// 1e-12 of the scale, or to what round-off leaves below 1e-10.
+/// last where it converges. What it throws at the first one passes; elsewhere the step is
+/// shortened. Converged to 1e-12 of the scale, or to what round-off leaves below 1e-10.
 Balance find_balance(Vector beta, const std::function<SpringState(const Vector &beta)> &lengths);
 
 /// Orthonormal combinations of the free motions that no multiplier resists, whatever it is:
