@@ -7,6 +7,7 @@ from figure_tools import (BLUE, FLOOR, GREEN, GREY, ORANGE, PURPLE, log_axis, pl
 # Beginning of the method, or of what it includes: name in the legend, colour, mark.
 KINDS = (("reduced", "reduced model (N + S, R)", BLUE, "o"),
          ("multilinear interpolation", "interpolation of snapshots", ORANGE, "D"),
+         ("interpolation by cubic", "interpolation of snapshots", ORANGE, "D"),
          ("nearest snapshot", "nearest snapshot", ORANGE, "D"),
          ("active_set", "high-fidelity, active set", GREEN, "s"),
          ("nitsche", "high-fidelity, Nitsche", GREEN, "s"),

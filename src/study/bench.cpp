@@ -266,13 +266,12 @@ BenchRow bench_vi(Problem &lumped, const std::vector<Mu> &set) {
 BenchRow bench_interpolation(Problem &problem, const std::vector<Sample> &snapshots,
                              const std::vector<Sample> &truths) {
   const std::vector<Mu> training = parameters_of(snapshots), set = parameters_of(truths);
-  const TrainingGrid grid = find_grid(training);
-  const ParameterSpace &space = problem.scene().parameters;
+  const SampleInterpolation samples(problem.scene().parameters, training);
   std::vector<Sample> answers;
   const std::vector<double> seconds = seconds_each(set, [&](const Mu &mu) {
     Sample answer{
         mu, Vector::Zero(truths.front().u.size()), Vector::Zero(truths.front().lambda.size()), {}};
-    for (const auto &[number, weight] : interpolation_weights(grid, training, space, mu)) {
+    for (const auto &[number, weight] : samples.weights(mu)) {
       answer.u += weight * snapshots[number].u;
       answer.lambda += weight * snapshots[number].lambda;
     }
@@ -281,10 +280,11 @@ BenchRow bench_interpolation(Problem &problem, const std::vector<Sample> &snapsh
   Errors errors(problem);
   for (std::size_t p = 0; p < answers.size(); ++p) {
     errors.add(answers[p].u, answers[p].lambda, truths[p]);
-    for (const auto &[number, weight] : interpolation_weights(grid, training, space, set[p]))
+    for (const auto &[number, weight] : samples.weights(set[p]))
       add_outputs(weight, snapshots[number].outputs, answers[p].outputs);
   }
-  BenchRow row = timed_row(grid.ticks.empty() ? "nearest snapshot" : "multilinear interpolation",
+  BenchRow row = timed_row(samples.on_grid() ? "multilinear interpolation"
+                                             : "interpolation by cubic radial functions",
                            "field; constraints not enforced", seconds);
   errors.store(row);
   row.outputs_max = largest_output_error(outputs_of(answers), outputs_of(truths));

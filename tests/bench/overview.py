@@ -161,7 +161,7 @@ def table(results):
     return "".join("| " + " | ".join(line) + " |\n" for line in lines)
 
 
-KINDS = (("reduced", BLUE, "o"), ("multilinear", ORANGE, "D"), ("nearest", ORANGE, "D"),
+KINDS = (("reduced", BLUE, "o"), ("multilinear", ORANGE, "D"), ("interpolation", ORANGE, "D"),
          ("active_set", GREEN, "s"), ("nitsche", PURPLE, "s"), ("uzawa", GREY, "^"), ("vi", GREY, "v"))
 
 
