@@ -13,6 +13,8 @@ namespace {
 
 using Row = NitschePoint::Row;
 
+constexpr double steepest = 1e3; ///< of a threshold in contact alone, by the pressure
+
 Row local(const std::array<int, 12> &dofs, const Vector &u) {
   Row result = Row::Zero();
   for (std::size_t i = 0; i < dofs.size(); ++i)
@@ -143,7 +145,44 @@ Matrix nitsche_pressures(const std::vector<NitscheFace> &faces, const Vector &u)
 double nitsche_bound(const NitscheLaw &law, double p_n) {
   if (law.law == FrictionLaw::none) return -1;
   if (law.law == FrictionLaw::coulomb) return coulomb_bound(p_n, law.value);
-  return law.only_in_contact && p_n >= 0 ? 0.0 : law.value;
+  return law.only_in_contact ? std::min(law.value, coulomb_bound(p_n, steepest)) : law.value;
+}
+
+Vector FollowingBounds::next(std::span<const NitscheLaw> laws, const Matrix &pressures,
+                             const Vector &bounds) {
+  Vector result(bounds.size()), excess = Vector::Zero(bounds.size());
+  std::vector<Index> between;
+  const bool first = bounds_.size() != bounds.size();
+  for (Index i = 0; i < bounds.size(); ++i) {
+    const NitscheLaw &law = laws[static_cast<std::size_t>(i)];
+    result[i] = nitsche_bound(law, pressures(i, 0));
+    if (law.law != FrictionLaw::tresca || !law.only_in_contact) continue;
+    excess[i] = pressures(i, 0) + bounds[i] / steepest;
+    const bool inside = bounds[i] > 0 && bounds[i] < law.value;
+    if (!first && (inside || excess[i] * excess_[i] < 0)) between.push_back(i);
+  }
+  if (between != between_) { // each by its own change
+    slopes_ = Matrix::Zero(std::ssize(between), std::ssize(between));
+    for (Index k = 0; k < slopes_.rows(); ++k) {
+      const Index i = between[k];
+      const double slope = (excess[i] - excess_[i]) / (bounds[i] - bounds_[i]);
+      slopes_(k, k) = slope > 0 ? slope : std::abs(excess[i]) / laws[i].value;
+    }
+    between_ = between;
+  } else if (!between.empty()) { // Broyden's
+    const Vector change = (bounds - bounds_)(between), rise = (excess - excess_)(between);
+    if (change.norm() > 0)
+      slopes_ += (rise - slopes_ * change) * change.transpose() / change.squaredNorm();
+  }
+  if (!between.empty()) {
+    const Vector step = lu_solve(slopes_, -Vector(excess(between)));
+    for (Index k = 0; k < step.size(); ++k)
+      if (const Index i = between[k]; std::isfinite(step[k]))
+        result[i] = std::clamp(bounds[i] + step[k], 0.0, laws[i].value);
+  }
+  bounds_ = bounds;
+  excess_ = std::move(excess);
+  return result;
 }
 
 Vector NitscheTerms::bounds_at(const Matrix &pressures) const {
@@ -190,6 +229,10 @@ NitscheTerms terms_of(std::span<const NitscheFace> faces) {
 
 Vector nitsche_bounds(std::span<const NitscheFace> faces, const Matrix &pressures) {
   return terms_of(faces).bounds_at(pressures);
+}
+
+std::vector<NitscheLaw> laws_at_points(std::span<const NitscheFace> faces) {
+  return terms_of(faces).laws;
 }
 
 bool bounds_move(const std::vector<NitscheFace> &faces) {

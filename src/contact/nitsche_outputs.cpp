@@ -32,7 +32,7 @@ Sums integrate(std::span<const NitscheFace> faces, const Matrix &pressures, cons
       const double pressure = std::max(0.0, -pressures(number, 0)), shear = pressures(number, 1);
       const Point &n = point.facing.normal, &out = point.body_normal;
       if (pressure > 0) check_pressed_side(dot(n, out), point.place.x);
-      const double bound = bounds.size() > 0 ? bounds[number] : 0;
+      const double bound = bounds.size() > 0 ? std::max(0.0, bounds[number]) : 0;
       const double held = std::clamp(shear, -bound, bound);
       force += point.weight * pressure;
       sums.tangential += point.weight * std::abs(held);
@@ -84,9 +84,9 @@ double ends_in_contact(const CurveFields &fields, const std::vector<int> &open_e
 }
 
 void nitsche_outputs(std::span<const NitscheFace> faces, const Matrix &pressures,
-                     const CurveFields &fields, Outputs &outputs) {
+                     const Vector &bounds_there, const CurveFields &fields, Outputs &outputs) {
   const NitscheLaw &law = faces.front().law;
-  const Sums sums = integrate(faces, pressures, nitsche_bounds(faces, pressures));
+  const Sums sums = integrate(faces, pressures, bounds_there);
   outputs.normal_force = sums.normal;
   outputs.reaction = sums.force[1];
   outputs.horizontal_reaction = sums.force[0];
@@ -117,7 +117,7 @@ void nitsche_outputs(std::span<const NitscheFace> faces, const Matrix &pressures
 
 void nitsche_outputs(const NitscheLayer &layer, const FullMu &mu,
                      const std::vector<NitscheFace> &faces, const Vector &u,
-                     const Matrix &pressures, Outputs &outputs) {
+                     const Matrix &pressures, const Vector &bounds, Outputs &outputs) {
   Index first = 0;
   LawErrors errors;
   for (std::size_t k = 0; k < layer.curves.size(); ++k) {
@@ -125,7 +125,8 @@ void nitsche_outputs(const NitscheLayer &layer, const FullMu &mu,
     const auto own = std::span(faces).subspan(first, static_cast<std::size_t>(count));
     const CurveFields fields = nitsche_fields(layer, k, mu, u);
     Outputs part, &one = layer.curves.size() == 1 ? outputs : part;
-    nitsche_outputs(own, pressures.middleRows(4 * first, 4 * count), fields, one);
+    const Vector own_bounds = bounds.size() > 0 ? bounds.segment(4 * first, 4 * count) : bounds;
+    nitsche_outputs(own, pressures.middleRows(4 * first, 4 * count), own_bounds, fields, one);
     if (layer.scene.axisymmetric) drop_plane_outputs(one);
     if (const std::vector<int> &open = layer.curves[k].open_ends; !open.empty())
       one.ends_in_contact = image_count(layer.scene.mirrors) * ends_in_contact(fields, open);

@@ -142,8 +142,9 @@ void ReducedNitsche::outputs(const FullMu &all_parameters, const Vector &u,
   const Vector on_layer =
       model_.contact.trace * over_whole_curve(all_parameters, faces, u, outputs);
   turn_to(layer_, all_parameters, on_layer, faces);
-  nitsche_outputs(layer_, all_parameters, faces, on_layer, nitsche_pressures(faces, on_layer),
-                  outputs);
+  const Matrix pressures = nitsche_pressures(faces, on_layer);
+  nitsche_outputs(layer_, all_parameters, faces, on_layer, pressures,
+                  nitsche_bounds(faces, pressures), outputs);
 }
 
 } // namespace rbvi

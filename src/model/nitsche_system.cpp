@@ -252,16 +252,16 @@ int ReducedNitsche::System::settle() {
     if (const std::optional<int> more = follow_bound()) return *more;
     steps = most_full_steps;
   }
+  FollowingBounds following;
+  set_bounds();
   for (int loop = 0; loop < most_loops; ++loop) {
     const Vector before = u;
-    set_bounds();
     steps += minimise();
-    set_bounds();
+    bounds = following.next(terms.laws, pressures, bounds);
     (void)residual();
     if ((u - before).norm() <= bound_accuracy * u.norm() && relative <= round_off) return steps;
   }
-  throw failure("the bound of friction did not settle in " + std::to_string(most_loops) +
-                " loops: is the friction coefficient large?");
+  throw failure("the bound of friction did not settle in " + std::to_string(most_loops) + " loops");
 }
 
 } // namespace rbvi

@@ -62,6 +62,8 @@ NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheStart *st
 void NitscheSolver::run(bool nested, Vec u, NitscheSolution &result) {
   NitscheSystem &system = *system_;
   const Handle<Vec> before = like(u);
+  const std::vector<NitscheLaw> laws = laws_at_points(system.faces);
+  FollowingBounds following;
   const double accuracy = system.accuracy;
   const bool loose = nested && !options_.plain_steps && !loop_end;
   system.tolerance = loose ? std::max(1e-3, accuracy) : accuracy;
@@ -72,7 +74,8 @@ void NitscheSolver::run(bool nested, Vec u, NitscheSolution &result) {
     ++result.outer_iterations;
     if (loop_end) loop_end(system.on_layer(u), system.bounds);
     if (!nested) return;
-    system.set_bounds(u);
+    system.bounds =
+        following.next(laws, nitsche_pressures(system.faces, system.on_layer(u)), system.bounds);
     RBVI_CALL(VecAXPY(before.get(), -1, u));
     const double size = norm(u), change = size == 0 ? 0 : norm(before.get()) / size;
     const bool rests = change <= round_off && change > stagnant * last_change;
@@ -82,9 +85,9 @@ void NitscheSolver::run(bool nested, Vec u, NitscheSolution &result) {
     last_change = change;
     system.tolerance = std::clamp(1e-2 * change, accuracy, system.tolerance);
     if (result.outer_iterations == most_outer_iterations)
-      throw failure("Coulomb's bound did not settle in " + std::to_string(most_outer_iterations) +
-                    " steps: it still changes u by " + short_number(change) +
-                    "; is the friction coefficient large?");
+      throw failure("the bound of friction did not settle in " +
+                    std::to_string(most_outer_iterations) + " steps: it still changes u by " +
+                    short_number(change));
   }
 }
 

@@ -51,7 +51,7 @@ MethodResult ByNitsche::solve(const ContactTask &task) {
   MethodResult result;
   result.lambda = nitsche_multiplier(layer, op.mu, found.layer);
   nitsche_outputs(layer, op.mu, nitsche_faces(layer, op.mu, layer.cells, found.layer), found.layer,
-                  found.pressures, result.outputs);
+                  found.pressures, found.bounds, result.outputs);
   result.kkt.stationarity = found.residual;
   result.outputs.energy =
       image_count(problem_.scene().mirrors) * (found.energy + op.imposed_energy);

@@ -75,10 +75,38 @@ TEST(NitscheCurves, TogetherAnswerAsEachByItself) {
   }
 }
 
+/// Points that touch without friction and lift off with it: at some bound between them pressure and
+/// bound agree. Others touch, or do not, with any bound.
+TEST(NitscheCurves, BoundsThatTurnBackAndForthSettle) {
+  const NitscheLaw law{FrictionLaw::tresca, 0.5, true};
+  const std::vector<NitscheLaw> laws(4, law);
+  const Vector without{{-0.03, -0.02, -2, 1}};
+  const Matrix by_bounds{
+      {0.13, 0.02, 0.01, 0}, {0.05, 0.12, 0, 0.02}, {0.3, 0.1, 0.2, 0}, {0, 0.1, 0.1, 0.3}};
+  FollowingBounds following;
+  Matrix pressures = Matrix::Zero(4, 2);
+  Vector bounds = Vector::Zero(4), before;
+  int loops = 0;
+  do {
+    before = bounds;
+    pressures.col(0) = without + by_bounds * bounds;
+    bounds = following.next(laws, pressures, bounds);
+  } while ((bounds - before).norm() > 1e-13 && ++loops < 60);
+  EXPECT_LE(loops, 15);
+  EXPECT_EQ(bounds[2], law.value);
+  EXPECT_EQ(bounds[3], 0);
+  for (const Index i : {0, 1}) {
+    EXPECT_GT(bounds[i], 0.01);
+    EXPECT_LT(bounds[i], law.value);
+    EXPECT_NEAR(nitsche_bound(law, pressures(i, 0)), bounds[i], 1e-9);
+  }
+}
+
 Outputs outputs_of(const NitscheLayer &layer, const FullMu &mu, const Vector &u) {
   Outputs outputs;
   const auto faces = nitsche_faces(layer, mu, layer.cells);
-  nitsche_outputs(layer, mu, faces, u, nitsche_pressures(faces, u), outputs);
+  const Matrix pressures = nitsche_pressures(faces, u);
+  nitsche_outputs(layer, mu, faces, u, pressures, nitsche_bounds(faces, pressures), outputs);
   return outputs;
 }
 

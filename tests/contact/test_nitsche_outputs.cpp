@@ -63,7 +63,7 @@ Outputs outputs_of(std::vector<NitscheFace> faces, const Matrix &pressures,
   for (NitscheFace &face : faces)
     face.law = law;
   Outputs outputs;
-  nitsche_outputs(faces, pressures, fields, outputs);
+  nitsche_outputs(faces, pressures, nitsche_bounds(faces, pressures), fields, outputs);
   return outputs;
 }
 

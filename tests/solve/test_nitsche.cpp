@@ -3,6 +3,8 @@
 // to their ends.
 #include "nitsche_disk.hpp"
 
+#include "rbvi/scene/case.hpp"
+
 namespace rbvi::nitsche_test {
 namespace {
 
@@ -293,6 +295,28 @@ TEST(NitscheDisk, OneSolveIsTheSameOnAnyNumberOfRanks) {
     const Scene scene = small_disk(law);
     const Mu mu = with_radius(0.8);
     expect_equal(solve(PETSC_COMM_WORLD, scene, mu), solve(PETSC_COMM_SELF, scene, mu), 1e-10);
+  }
+}
+
+/// A threshold that acts in contact alone, where a point touches without it and lifts off with it.
+TEST(Nitsche, ThresholdsInContactAloneSettle) {
+  const std::string plate = "position: 0.9725}}, formulation: nitsche, "
+                            "friction: {tresca: threshold, bound: contact}}\n";
+  const std::string text =
+      "rbvi: 1\nphysics: plane_strain\nmesh: {built_in: annulus, edges: 24, degree: 1}\n"
+      "parameters:\n  hub_x: {range: [-0.02, 0.03], default: 0.01}\n"
+      "  hub_y: {range: [-0.03, 0.02], default: 0.01}\n"
+      "  threshold: {range: [0.02, 0.6], default: 0.3}\n"
+      "materials: {rubber: {at: all, E: 24 * (1 + 0.35*y), nu: 0.3}}\n"
+      "imposed: {hub: {at: hub, ux: hub_x, uy: hub_y}}\ncontact:\n"
+      "  lower: {at: bottom, against: {plane: {normal: [0, -1], " +
+      plate + "  upper: {at: top, against: {plane: {normal: [0, 1], " + plate;
+  Problem problem(PETSC_COMM_SELF, make_scene(read_case(text, "ring.yaml"), {}), {});
+  for (const Mu &mu : {Mu{-0.0027430839109787593, 0.01710277694356814, 0.4409627117382862},
+                       Mu{-0.013637658334679741, -0.011913321388200426, 0.07314211143458546}}) {
+    const HfSolution s = HighFidelity(problem, {}).solve(mu);
+    EXPECT_LE(s.outputs.kkt_residual.value(), 1e-9);
+    EXPECT_GT(s.outputs.tangential_force.value(), 0);
   }
 }
 

@@ -100,8 +100,23 @@ void turn_to(const NitscheLayer &layer, const FullMu &mu, const Vector &state,
 Matrix nitsche_pressures(const std::vector<NitscheFace> &faces, const Vector &u);
 
 /// The bound of friction that the pressure P_n at a point of this law tells: s (4.33), or s^c
-/// (4.51); -1 without friction.
+/// (4.51); -1 without friction. A threshold that acts in contact alone rises with the pressure,
+/// from 0 to s at s / 1000: where friction lifts a point off that touches without it, some bound
+/// between them is the answer.
 double nitsche_bound(const NitscheLaw &law, double p_n);
+
+/// Bounds that follow u, one loop of frozen ones after the other. Where a threshold turns back and
+/// forth, that at which bound and pressure agree, by Broyden's method.
+class FollowingBounds {
+public:
+  /// From the pressures that bounds have led to, those of the next loop.
+  Vector next(std::span<const NitscheLaw> laws, const Matrix &pressures, const Vector &bounds);
+
+private:
+  Vector bounds_, excess_;     ///< of the loop before
+  std::vector<Index> between_; ///< points where the threshold turns
+  Matrix slopes_;              ///< of their excesses by their bounds
+};
 
 /// The terms at P points as functions of their pressures, P x 2, whatever unknowns these are
 /// functions of. `bounds` of friction: P of them, or none.
@@ -128,6 +143,7 @@ NitscheTerms terms_of(std::span<const NitscheFace> faces);
 
 /// The bounds at every point; empty where no face has friction.
 Vector nitsche_bounds(std::span<const NitscheFace> faces, const Matrix &pressures);
+std::vector<NitscheLaw> laws_at_points(std::span<const NitscheFace> faces);
 
 /// Whether the bounds of some face depend on u.
 bool bounds_move(const std::vector<NitscheFace> &faces);
@@ -193,13 +209,13 @@ double ends_in_contact(const CurveFields &fields, const std::vector<int> &open_e
 /// support_outputs. `faces`: all of the curve. centre_pressure is that of -[P_n]_- averaged over
 /// each edge.
 void nitsche_outputs(std::span<const NitscheFace> faces, const Matrix &pressures,
-                     const CurveFields &fields, Outputs &outputs);
+                     const Vector &bounds_there, const CurveFields &fields, Outputs &outputs);
 
 /// The same of all curves of the layer: with several, what are sums or maxima over them, and the
 /// errors of the laws over the nodes of all, so that one without contact does not count. `faces`:
-/// of all cells; `u` and the pressures are those of their state.
+/// of all cells; `u`, the pressures and the bounds of friction are those of their state.
 void nitsche_outputs(const NitscheLayer &layer, const FullMu &mu,
                      const std::vector<NitscheFace> &faces, const Vector &u,
-                     const Matrix &pressures, Outputs &outputs);
+                     const Matrix &pressures, const Vector &bounds, Outputs &outputs);
 
 } // namespace rbvi
