@@ -11,10 +11,32 @@ COLUMNS = ["section", "scene", "what", "outcome", "deviation", "tolerance", "sai
 SECTIONS = {"models": "Reduced models", "solves": "High-fidelity answers", "files": "Files and processes",
             "queries": "Many queries"}
 OUTCOMES = ("same", "refused", "WRONG")
+# A row may be so much farther off than the committed one; below round-off how far tells nothing.
+FARTHER, ROUND_OFF = 4, 1e-7
 
 
 def number(value):
     return "" if value is None else f"{value:.1e}"
+
+
+def worse(section, rows, chosen):
+    """What the committed table has as `same` in the scenes that are `chosen`, and these rows have not: refused, not
+    made, or several times as far off, each a sentence."""
+    made = {(row.scene, row.what): row for row in rows}
+    found = []
+    with open(HERE / "stress.csv", encoding="utf-8", newline="") as file:
+        for told in csv.DictReader(file):
+            if told["section"] != section or not chosen(told["scene"]) or told["outcome"] != "same":
+                continue
+            row = made.get((told["scene"], told["what"]))
+            name = f"{told['scene']}: {told['what']}"
+            if row is None:
+                found.append(f"{name}: no such row any more")
+            elif row.outcome == "refused":
+                found.append(f"{name}: is refused, and was answered: {row.said}")
+            elif row.outcome == "same" and row.deviation > max(FARTHER * float(told["deviation"]), ROUND_OFF):
+                found.append(f"{name}: {row.deviation:.1e} off, and was {told['deviation']}")
+    return found
 
 
 def commit():
