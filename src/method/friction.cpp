@@ -81,19 +81,23 @@ private:
   /// known: not to be followed any further.
   enum class Outcome { converged, known, cycles, indefinite, limit };
 
-  /// Along growing coefficients, from the last point that is reached.
+  /// Along growing coefficients, or thresholds in contact that come down to what they are, from the
+  /// last point that is reached.
   Outcome continued_from_no_friction(const Vector &guess) {
+    constexpr int halvings = 10; // of thresholds, from where all that touches sticks
     const LcpResult normal = normal_contact(h_, q_, laws_.nodes, guess, options_);
     systems_left_ -= normal.iterations;
     Vector x = Vector::Zero(q_.size());
     if (normal.x.size() == laws_.nodes) x.head(laws_.nodes) = normal.x;
     prepare(laws_, x);
     State point = evaluate(h_, q_, std::move(x));
-    const int steps = Laws::steps_to(laws_.coefficient.maxCoeff());
+    const bool comes_down = laws_.coefficient.isZero(0);
+    const int steps = comes_down ? halvings : Laws::steps_to(laws_.coefficient.maxCoeff());
     for (int k = 1; k < steps; ++k) {
       State next = point;
-      if (newton(laws_.with_part(static_cast<double>(k) / steps), next) != Outcome::converged)
-        break;
+      const Laws part = comes_down ? laws_.with_thresholds(std::ldexp(1.0, steps - k))
+                                   : laws_.with_part(static_cast<double>(k) / steps);
+      if (newton(part, next) != Outcome::converged) break;
       point = std::move(next);
     }
     return newton(laws_, point);

@@ -35,6 +35,7 @@ struct Laws {
   static int steps_to(double largest);
   /// With this part of the coefficients.
   Laws with_part(double part) const;
+  Laws with_thresholds(double factor) const; ///< so many times as large
 };
 
 /// The kind of x_tau at a node: zero, free, or of a given direction.

@@ -112,4 +112,10 @@ Laws Laws::with_part(double part) const {
   return result;
 }
 
+Laws Laws::with_thresholds(double factor) const {
+  Laws result = *this;
+  result.threshold *= factor;
+  return result;
+}
+
 } // namespace rbvi::friction

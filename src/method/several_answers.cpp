@@ -28,6 +28,7 @@ double distance_to_other_answer(FrictionSolver &solver, const FrictionResult &fo
     if (other.converged) farthest = std::max(farthest, distance_of_answers(found.x, other.x));
   };
   if (!solver.by_rule()) look(found.start, true);
+  if (std::ranges::any_of(laws.bound, &FrictionBound::jumps)) look({}, false); // from rest
   Vector reversed = found.start;
   for (Index i = 0; i < laws.nodes(); ++i) {
     if (!laws.has_tangent(i)) continue;

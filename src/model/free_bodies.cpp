@@ -20,7 +20,7 @@ FreeMotions free_motions_at(const BodyAtMu &body, const Matrix &motions, Matrix 
 bool rests_at_start(const ReducedModel &model, const Scene &scene) {
   return model.body.springs.size() > 0 &&
          std::ranges::any_of(scene.contacts, [](const ContactRecipe &contact) {
-           return contact.friction == FrictionLaw::coulomb;
+           return contact.friction != FrictionLaw::none;
          });
 }
 

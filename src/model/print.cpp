@@ -174,9 +174,9 @@ void print_several_answers(std::ostream &out, const ReducedModel &model) {
   out << "  the " << (reduced ? "reduced " : "") << "law of friction has several answers, "
       << short_number(known.front()) << " of the largest multiplier apart at "
       << describe(model.scene.parameters, Mu(known.begin() + 1, known.end())) << ": a query takes "
-      << (reduced ? "the one that the nearest training parameter leads to"
-                  : "the one that continues the answer without friction, and says where there are "
-                    "others")
+      << (reduced
+              ? "the one that the nearest training parameter leads to"
+              : "the one by rule (OUTPUTS.md), as a full solve, and says where there are others")
       << '\n';
 }
 
@@ -186,7 +186,7 @@ void warn_of_other_answers(std::ostream &out, long not_alone, long all) {
       << (all == 1 ? "the answer is not the only one"
                    : std::to_string(not_alone) + " of " + std::to_string(all) +
                          " answers are not the only ones at their parameters")
-      << ": the law of friction has others with this coefficient\n";
+      << ": the law of friction has others with this coefficient or threshold\n";
 }
 
 void print_written(std::ostream &out, const std::vector<std::filesystem::path> &paths) {

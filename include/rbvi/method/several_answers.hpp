@@ -1,6 +1,8 @@
 // Where the bound of friction follows the pressure and its coefficient c is large, several x can
 // solve the problem of friction.hpp. The rule that chooses one, whatever came before: the answer
-// without friction, which is unique, continued while the coefficients grow to c.
+// without friction, which is unique, continued while the coefficients grow to c. Of thresholds
+// alone that act in contact alone: that of what touches without friction and sticks, continued
+// while the thresholds come down to what they are.
 #pragma once
 
 #include "rbvi/method/friction.hpp"
@@ -24,8 +26,9 @@ struct FrictionAnswer : FrictionResult {
 };
 
 /// As solve_friction. `by_rule`, where bounds follow the pressure: begins without friction, and
-/// lets the coefficients grow in steps of at most 0.25; `start` is then no more than a guess of the
-/// contact without friction, so that the answer depends on the problem alone.
+/// lets the coefficients grow in steps of at most 0.25, or halves 500-fold thresholds until they
+/// are what they are; `start` is then no more than a guess of the contact without friction, so that
+/// the answer depends on the problem alone.
 FrictionAnswer friction_answer(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,
                                const Vector &start, bool by_rule,
                                const FrictionOptions &options = {});
@@ -59,10 +62,10 @@ private:
 double distance_of_answers(const Vector &x, const Vector &other);
 
 /// The distance of found.x, the last answer() of a problem, to the farthest other answer; 0: none
-/// was found. Looks by the rule where `found` is not the answer by it; from contact at every node
-/// with friction, its traction against that of `found`; and from the contact of `found` (of all
-/// nodes where it has none) with all of it stuck, or slipping one way or the other. Where bounds do
-/// not follow the pressure nothing is asked.
+/// was found. Looks by the rule where `found` is not the answer by it; where thresholds act in
+/// contact alone, from rest; from contact at every node with friction, its traction against that of
+/// `found`; and from the contact of `found` (of all nodes where it has none) with all of it stuck,
+/// or slipping one way or the other. Where bounds do not follow the pressure nothing is asked.
 double distance_to_other_answer(FrictionSolver &solver, const FrictionResult &found);
 
 } // namespace rbvi

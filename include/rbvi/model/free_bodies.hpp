@@ -13,8 +13,8 @@ namespace rbvi {
 FreeMotions free_motions_at(const BodyAtMu &body, const Matrix &motions, Matrix held,
                             NodeLaws laws);
 
-/// Whether queries start from rest, by the rule of friction_answer: with Coulomb's friction forces
-/// may balance in several answers, and this is the one of the full model.
+/// Whether queries start from rest, by the rule of friction_answer: with friction forces may balance
+/// in several answers, and this is the one of the full model.
 bool rests_at_start(const ReducedModel &model, const Scene &scene);
 
 /// As method.solve(), with the springs relaxed. Throws failure where forces do not balance, or
