@@ -2,7 +2,8 @@
 """readme_lists_formulas.py ROOT: the index of src/README.md has every numbered formula of the code.
 
 A number in parentheses in a comment or in a text of src, include/rbvi and cases, "(2.27)", "(3.12a,
-3.17)", "(B.32)", stands in the index, and every file that the index names for a number holds it.
+3.17)", "(B.32)", stands in the index, and every file that the index names for a number holds it. Lines
+"Niakh (2022): ..." are those of cases/THESIS.md, which thesis_map.py compares.
 """
 
 import re
@@ -11,7 +12,7 @@ from pathlib import Path
 
 NUMBER = r"(?:B|[2-4])\.[1-9][0-9]*[a-z]?"
 GROUP = re.compile(rf"\(({NUMBER}(?:, {NUMBER})*)\)")
-NO_FORMULAS = re.compile(r"Gmsh")  # versions of its files
+NO_FORMULAS = re.compile(r"Gmsh|Niakh \(2022\): ")  # versions of its files; lines of the map
 
 
 def numbers_in(text):
