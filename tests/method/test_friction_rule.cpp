@@ -58,6 +58,46 @@ TEST(FrictionRule, FindsOthersFromOtherStarts) {
   EXPECT_TRUE(bounds_follow_pressure(uniform_laws(1, 2, {0, 0.3, true})));
 }
 
+/// A threshold that acts in contact alone: with q = (0.2, -2) one node is apart, or slips with
+/// x = (0.3, 1), which holds it down. Without friction it is apart.
+TEST(FrictionRule, ThresholdsInContactAloneHaveSeveralAnswers) {
+  const Matrix h{{1, -0.5}, {-0.5, 1}};
+  const Vector q{{0.2, -2}}, slipping{{0.3, 1}};
+  FrictionSolver solver(columns_of(h), uniform_laws(1, 2, {0, 1, true}));
+  for (const Vector &start : {Vector(), slipping, Vector(-q)}) {
+    const FrictionAnswer found = solver.answer(q, start, true);
+    ASSERT_TRUE(found.converged) << found.reason;
+    EXPECT_EQ(found.x, Vector::Zero(2));
+    EXPECT_NEAR(distance_to_other_answer(solver, found), 1, 1e-12);
+  }
+  const FrictionAnswer held = solver.answer(q, slipping, false);
+  EXPECT_LT((held.x - slipping).norm(), 1e-12);
+  EXPECT_NEAR(distance_to_other_answer(solver, held), 1, 1e-12);
+}
+
+/// The rule comes down from where all that touches sticks: two nodes of which one pushes the other
+/// down while it sticks, and lifts it while it slips. Whatever the threshold, as long as both
+/// touch.
+TEST(FrictionRule, ThresholdsInContactAloneComeDown) {
+  Random random(3);
+  int touching = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    const Matrix h = random_positive(random, 8, 2);
+    const Vector q = random.vector(8) - Vector::Unit(8, trial % 4);
+    const auto at = [&](double threshold, const Vector &start, bool by_rule) {
+      return friction_answer(columns_of(h), q, uniform_laws(4, 2, {0, threshold, true}), start,
+                             by_rule);
+    };
+    const FrictionAnswer stuck = at(1e6, {}, true);
+    if (!stuck.converged) continue; // there need not be one
+    const double least = stuck.x.tail(4).cwiseAbs().maxCoeff();
+    const FrictionAnswer above = at(1.01 * least, {}, true);
+    EXPECT_LT((above.x - stuck.x).norm(), 1e-9 * (1 + stuck.x.norm())) << "nothing slips yet";
+    touching += stuck.active.empty() ? 0 : 1;
+  }
+  EXPECT_GT(touching, 20);
+}
+
 /// Where there is one answer the rule finds it, from any guess of the contact, in two and three
 /// dimensions.
 TEST(FrictionRule, FindsTheOnlyAnswer) {
