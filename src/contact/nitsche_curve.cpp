@@ -174,12 +174,11 @@ Vector FollowingBounds::next(std::span<const NitscheLaw> laws, const Matrix &pre
     if (change.norm() > 0)
       slopes_ += (rise - slopes_ * change) * change.transpose() / change.squaredNorm();
   }
-  if (!between.empty()) {
-    const Vector step = lu_solve(slopes_, -Vector(excess(between)));
-    for (Index k = 0; k < step.size(); ++k)
-      if (const Index i = between[k]; std::isfinite(step[k]))
-        result[i] = std::clamp(bounds[i] + step[k], 0.0, laws[i].value);
-  }
+  Vector step;
+  if (!between.empty()) step = lu_solve(slopes_, -Vector(excess(between)));
+  for (Index k = 0; k < step.size(); ++k)
+    if (const Index i = between[k]; std::isfinite(step[k]))
+      result[i] = std::clamp(bounds[i] + step[k], 0.0, laws[i].value);
   bounds_ = bounds;
   excess_ = std::move(excess);
   return result;

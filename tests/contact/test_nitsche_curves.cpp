@@ -156,7 +156,7 @@ TEST(NitscheCurves, TheMultiplierIsMinusTheStress) {
 /// Axes turn on the curve that follows the displacement alone.
 TEST(NitscheCurves, OneMayFollowTheDisplacement) {
   TwoCurves two({}, {FrictionLaw::coulomb, constant(0.3)});
-  Facing turning{[](const FullMu &, const PlacedPoint &, const Point &displacement) {
+  Facing turning{.at = [](const FullMu &, const PlacedPoint &, const Point &displacement) {
     const double angle = 0.3 + 2 * displacement[0];
     return FacedPoint{
         {std::sin(angle), -std::cos(angle), 0}, 0.02 - 0.5 * displacement[1], displacement[0], 0.7};

@@ -1,3 +1,4 @@
+// Niakh (2022): Figure 2.1, Remark 2.4.2, Lemma 2.4.1.
 #include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/method/nonnegative_qp.hpp"
