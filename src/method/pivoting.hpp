@@ -13,6 +13,7 @@
 // ends where the matrix is a P-matrix, or a convex problem with frozen bounds.
 #pragma once
 
+#include "rbvi/core/dense.hpp"
 
 #include <algorithm>
 #include <limits>
