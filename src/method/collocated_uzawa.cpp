@@ -1,3 +1,4 @@
+// Niakh (2022): (3.40), (3.52), (3.55).
 #include "rbvi/method/collocated_friction.hpp"
 
 #include "rbvi/core/text.hpp"

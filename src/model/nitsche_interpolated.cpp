@@ -1,3 +1,4 @@
+// Niakh (2022): (4.79), (4.80).
 #include "nitsche_interpolated.hpp"
 
 #include "rbvi/core/error.hpp"

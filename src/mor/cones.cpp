@@ -1,3 +1,4 @@
+// Niakh (2022): (2.33), (2.34), (B.13)-(B.26).
 #include "cone_tools.hpp"
 
 #include "rbvi/core/error.hpp"

@@ -1,3 +1,4 @@
+// Niakh (2022): (B.32), (B.35).
 #include "rbvi/mor/eim.hpp"
 
 #include "rbvi/core/error.hpp"

@@ -1,3 +1,4 @@
+// Niakh (2022): (3.56), (3.57), Algorithm 3, Remark 3.3.2, Remark 3.3.3.
 #include "rbvi/mor/gcns.hpp"
 
 #include "rbvi/core/error.hpp"

@@ -1,3 +1,4 @@
+// Niakh (2022): (3.39).
 #include "rbvi/mor/stages.hpp"
 
 #include "rbvi/core/error.hpp"

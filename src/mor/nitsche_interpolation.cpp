@@ -1,3 +1,4 @@
+// Niakh (2022): (4.71)-(4.78).
 #include "nitsche_interpolation.hpp"
 
 #include "rbvi/model/packed.hpp"

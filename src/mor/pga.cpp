@@ -1,3 +1,5 @@
+// Niakh (2022): (2.27)-(2.29), (2.31), (2.32), (A.21), (A.22), Algorithm 1, Lemma 2.3.1.
+// Niakh (2022): Remark 2.3.1.
 #include "rbvi/mor/stability.hpp"
 
 #include "pga_candidate.hpp"

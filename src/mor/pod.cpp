@@ -1,3 +1,4 @@
+// Niakh (2022): (B.9)-(B.12).
 #include "rbvi/mor/pod.hpp"
 
 #include "append_block.hpp"

@@ -1,3 +1,4 @@
+// Niakh (2022): (1.25), (1.26), (3.41), (3.42).
 #include "rbvi/mor/reduce.hpp"
 
 #include "cone_tools.hpp"

@@ -1,4 +1,5 @@
 // One system of Nitsche's method at a time, and the PETSc objects that outlive it.
+// Niakh (2022): (4.27)-(4.32), (4.45)-(4.48), (4.56)-(4.59).
 #pragma once
 
 #include "rbvi/solve/local_frames.hpp"

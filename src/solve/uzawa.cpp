@@ -1,3 +1,4 @@
+// Niakh (2022): (3.24), (3.33), (3.34).
 #include "rbvi/method/uzawa.hpp"
 
 #include "rbvi/par/collective.hpp"

@@ -4,8 +4,8 @@
 The numbers are those of thesis_numbers.txt. Each stands in the first cell of a row, itself or within
 a range ("(2.31)-(2.33)", "Figures 2.5 to 2.7"); a letter, (3.12a), belongs to its number. The last
 cell of such a row begins with how the project has it, and the row links to a file unless that is "not
-there". Each figure and table of the row then stands in one of these files, itself or within a range, or
-in a page that shows such a picture. Neither that page nor cases/ERRATA.md
+there". Each number of the row then stands in one of these files, itself or within a range; a picture's
+in a page that shows it; the perspectives have no names elsewhere. Neither that page nor cases/ERRATA.md
 names a number that the list does not have, and every file that they link to is there.
 """
 
@@ -65,10 +65,10 @@ def texts_of(folder, link):
 
 
 def not_named(folder, cells, numbers):
-    """Of the figures and tables of a row, those that no file that it links to names."""
+    """Of the numbers of a row, those that no file that it links to names."""
     links = [link for link in LINK.findall(" | ".join(cells)) if "://" not in link and not link.startswith("#")]
     named = {number for link in links for text in texts_of(folder, link) for number in numbers_in(text)}
-    return [number for number in numbers if number not in named and number.startswith(("Figure", "Table"))]
+    return [number for number in numbers if number not in named and not number.startswith("Perspective")]
 
 
 def check_map(page, known, folder):

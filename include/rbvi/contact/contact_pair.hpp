@@ -8,6 +8,7 @@
 // abscissa. By degree 1 the gap is that of the polygons. By degree 2 it is that of the curves
 // through the three nodes of each edge, so that bodies with straight edges meet along their true
 // curves if the middles are on them; of vertical pairing these are parabolas over the abscissa.
+// Niakh (2022): (2.50).
 #pragma once
 
 #include "rbvi/contact/interface.hpp"

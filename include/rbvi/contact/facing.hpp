@@ -1,6 +1,7 @@
 // What the points of a boundary face: a rigid support where the body is at rest, or a rigid surface
 // where it now is (large deformations). Contact by multipliers (contact/support.hpp) and by
 // Nitsche's method (contact/nitsche.hpp) ask nothing else of what is faced.
+// Niakh (2022): (3.4), (3.5).
 #pragma once
 
 #include "rbvi/contact/friction.hpp"

@@ -7,6 +7,7 @@
 // each term is a function of one of these scalars: an energy density, its slope (what the residual
 // tests with) and its curvature (what the tangent has). The distributed assembly and the reduced
 // models use the same functions. gamma is a pressure over a length.
+// Niakh (2022): (4.1)-(4.3), (4.16), (4.17), (4.20), (4.34), (4.37), (4.38).
 #pragma once
 
 #include "rbvi/contact/facing.hpp"

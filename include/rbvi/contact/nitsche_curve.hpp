@@ -9,6 +9,7 @@
 // turns by, sigma_n kappa tau tau^T in contact, kappa the curvature of what is faced (from afar
 // sigma_n is far smaller than P_n). What is left out, mostly of the tangential stress, is small:
 // the steps converge linearly, but fast. There is no energy then.
+// Niakh (2022): (4.4), (4.5), (4.12), (4.13), (4.39), (4.42), (4.44), (4.49), (4.50), (4.52).
 #pragma once
 
 #include "rbvi/contact/nitsche.hpp"

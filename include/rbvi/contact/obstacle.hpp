@@ -2,6 +2,7 @@
 // lambda >= 0 whose functions are the hats of the region's vertices, whatever the degree of u,
 //
 //   b(mu; v, eta) = -int v eta,   g(mu; eta) = -int psi eta   over the mapped region (2.40).
+// Niakh (2022): (2.39).
 #pragma once
 
 #include "rbvi/contact/entity_sum.hpp"

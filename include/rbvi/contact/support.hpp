@@ -9,6 +9,7 @@
 // Gauss points, or with their two vertices, which makes the constraint one at each vertex; normal
 // and gap are those at the points of the reference edges. B w <= g in the rows of the normal
 // multipliers; B w - g is the slip in the others (3.12), (3.17).
+// Niakh (2022): (3.7), (3.8), (3.11), (A.1), (A.2), (A.5), (A.6).
 #pragma once
 
 #include "rbvi/contact/facing.hpp"

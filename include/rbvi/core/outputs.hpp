@@ -1,4 +1,4 @@
-// The quantities of interest of one solve, full or reduced, and their table.
+// The quantities of interest of one solve, full or reduced, and their table. Niakh (2022): (4.14).
 #pragma once
 
 #include "rbvi/core/dense.hpp"

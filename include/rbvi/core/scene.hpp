@@ -5,6 +5,8 @@
 //
 // on a reference domain. Nothing here knows of meshes in memory, MPI or PETSc, so the same
 // scene serves the offline assembly and the online evaluation of sampled entries.
+// Niakh (2022): (1.1)-(1.6), (1.8)-(1.12), (2.1), (2.2), (2.5), (2.6), (4.9), (4.10).
+// Niakh (2022): Theorem 1.3.1, Theorem 1.3.2.
 #pragma once
 
 #include "rbvi/core/contact_recipe.hpp"

@@ -1,5 +1,6 @@
 // Cell kernels of linear elasticity, as Forms: local dof = node * dim + component, degree 1 or 2.
 // One kernel serves 2D (plane strain; plane stress with a lambda of its own) and 3D.
+// Niakh (2022): (3.1), (3.2), (3.9), (3.10), (4.6)-(4.8).
 #pragma once
 
 #include "rbvi/core/scene.hpp"

@@ -11,6 +11,7 @@
 //
 // With friction lambda has a tangential part behind the normal one; there B u - G is the slip, and
 // |lambda_tau| <= bound, lambda_tau = bound slip / |slip| where it slips (corrected (3.32)).
+// Niakh (2022): (1.18), (1.19), (3.25)-(3.31).
 #pragma once
 
 #include "rbvi/contact/named_outputs.hpp"

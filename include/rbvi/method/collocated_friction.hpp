@@ -8,7 +8,7 @@
 //
 // H = B A^-1 B^T on the reduced pair, symmetric positive definite. a: R coefficients of the cone of
 // lambda_n, b: S coefficients of the modes of lambda_tau; N, T: their values at the nodes.
-// Tangential multipliers of one component (2D).
+// Tangential multipliers of one component (2D). Niakh (2022): (3.53).
 #pragma once
 
 #include "rbvi/method/friction.hpp"

@@ -1,6 +1,7 @@
 // The laws of contact and friction as data, node by node: x_n >= 0, and at nodes with friction
 // |x_tau| <= c x_n + t, a ball of d - 1 dimensions. A system can have nodes of both kinds, from
 // interfaces with laws of their own, and rows in any order.
+// Niakh (2022): (3.6), (3.13)-(3.16), (3.20)-(3.23), Remark 3.2.1, Remark 3.2.2.
 #pragma once
 
 #include "rbvi/core/dense.hpp"

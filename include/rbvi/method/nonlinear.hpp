@@ -7,7 +7,7 @@
 // (A.7) linearises at the state s, solves that problem exactly and takes its u as the next state:
 // sequential quadratic programming without the curvature K = d(B(s)^T x)/ds. Newton's method adds
 // the load -K (u - s) and is quadratic; without friction. Anderson's acceleration combines the last
-// states of Kacanov's iteration.
+// states of Kacanov's iteration. Niakh (2022): (1.14)-(1.17), (A.10).
 #pragma once
 
 #include "rbvi/method/friction.hpp"

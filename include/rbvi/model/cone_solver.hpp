@@ -6,6 +6,7 @@
 // What does not depend on mu is done once: Y where A and B have one term each. B and G that do not
 // separate are evaluated anew, on the interfaces alone. Free modes have equations in place of
 // inequalities. An online-enriched model is first reduced to V_N + S_R(mu) (2.17).
+// Niakh (2022): (1.21)-(1.24).
 #pragma once
 
 #include "rbvi/method/mixed_qp.hpp"

@@ -9,7 +9,7 @@
 // loop (4.63). With empirical interpolation over (mu, Newton step) there is no energy: (4.79) as
 // printed, from neighbouring samples; where it does not converge, the derivative of its vectors,
 // with halved steps. Where contact follows the displacement (large deformations) the axes of the
-// points turn to those of every iterate.
+// points turn to those of every iterate. Niakh (2022): (4.66)-(4.70), Remark 4.4.1.
 #pragma once
 
 #include "rbvi/model/answer.hpp"

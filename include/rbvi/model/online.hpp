@@ -1,6 +1,7 @@
 // The online stage: one parameter in, one checked answer out. Serial and dense. By a method for
 // each kind of model: the pair of spaces (model/cone_solver.hpp), the law at the nodes
 // (model/law_solver.hpp), Nitsche's method (model/nitsche_solver.hpp).
+// Niakh (2022): (3.44), (3.45), Remark 3.3.1.
 #pragma once
 
 #include "rbvi/contact/named_outputs.hpp"

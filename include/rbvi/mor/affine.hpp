@@ -1,6 +1,6 @@
 // Separation of mu and space: empirical interpolation over the training set of B, G and of what is
 // not a sum of exact terms in A and F, with the small meshes on which the sampled entries are
-// re-assembled online.
+// re-assembled online. Niakh (2022): (1.27)-(1.29), (3.47)-(3.51).
 #pragma once
 
 #include "rbvi/fem/problem.hpp"

@@ -9,6 +9,7 @@
 //   hybrid         on the nodes over which the edge of contact moves: hat functions, extended to
 //                  the nodes that never leave contact so that they do not move those; there: a few
 //                  modes of either sign
+// Niakh (2022): (2.12).
 #pragma once
 
 #include "rbvi/core/dense.hpp"

@@ -3,7 +3,7 @@
 // The snapshots stay where they were assembled: each rank holds some of the entries, for all mu.
 // A step finds the largest residual over all ranks (a reduction of P numbers, a gather of the
 // lowest keys) and shares the residual row of that entry (P numbers); residuals are updated in
-// place, never recomputed.
+// place, never recomputed. Niakh (2022): (B.27)-(B.29).
 #pragma once
 
 #include "rbvi/core/dense.hpp"

@@ -1,5 +1,5 @@
 // The constants of the high-fidelity pair of spaces (Niakh 2022, (2.3)), and the tolerance of the
-// projected greedy that follows from them.
+// projected greedy that follows from them. Niakh (2022): (1.7), (2.4).
 #pragma once
 
 #include "rbvi/fem/problem.hpp"

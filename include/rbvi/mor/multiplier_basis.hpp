@@ -1,6 +1,6 @@
 // Functions that the multipliers of contact with friction are combined from (Niakh 2022, 3.3.2), in
 // coefficients of the nodal dual basis: m of them, k for lambda_n and the rest for lambda_tau, of
-// the interfaces with friction alone. Serial and dense.
+// the interfaces with friction alone. Serial and dense. Niakh (2022): (3.36)-(3.38).
 #pragma once
 
 #include "rbvi/model/model.hpp"

@@ -1,5 +1,6 @@
 // What a reduced model of Nitsche's method takes of the contact curve: the cells beside it, the
 // terms that keep the method consistent, and how contact and friction are integrated.
+// Niakh (2022): (4.86).
 #pragma once
 
 #include "rbvi/fem/problem.hpp"

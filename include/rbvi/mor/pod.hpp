@@ -1,5 +1,6 @@
 // Proper orthogonal decomposition in the V product: QR of the snapshots, then SVD of the small
 // factor (B.1), never the eigenvalues of a squared Gram matrix alone.
+// Niakh (2022): (2.10), (A.11)-(A.15), (B.2)-(B.8).
 #pragma once
 
 #include "rbvi/solve/response_solver.hpp"

@@ -1,4 +1,5 @@
 // From snapshots to a reduced model: POD, cone, supremizers, separation, projection.
+// Niakh (2022): (2.20).
 #pragma once
 
 #include "rbvi/mor/affine.hpp"

@@ -9,6 +9,7 @@
 //   b(mu; v, eta)  = eta^T B_c(mu) L y  for v with coordinates [ y ; z ].
 // Constants are over the span of the dual basis, a lower bound for the cone's (Niakh 2022, 2.3),
 // which cases/reduced_pairs.py has.
+// Niakh (2022): (2.15), (2.16), (2.19), (2.25), (2.26), (A.16)-(A.20), Proposition 2.3.1.
 #pragma once
 
 #include "rbvi/core/dense.hpp"

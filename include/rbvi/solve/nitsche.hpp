@@ -7,6 +7,8 @@
 // A tangent differs from the last one at a few points of the curve alone: conjugate gradients with
 // an earlier factorisation solve it, and it is factorised anew where they take more than a few
 // iterations.
+// Niakh (2022): (4.21), (4.22), (4.24)-(4.26), (4.54), (4.55), (4.60)-(4.62), (4.64).
+// Niakh (2022): Remark 4.3.1.
 #pragma once
 
 #include "rbvi/contact/nitsche_curve.hpp"

@@ -1,4 +1,5 @@
 // Errors of reduced answers against high-fidelity ones, relative: u in V, the multiplier in W.
+// Niakh (2022): (4.88), (4.89), (4.97), (4.98).
 #pragma once
 
 #include "rbvi/fem/problem.hpp"

@@ -3,6 +3,7 @@
 //   e(j) = max over mu of |B(mu) - sum over q <= j of theta_q(mu) B_q| / max over mu of |B(mu)|
 //
 // in the largest entry, over the set that the terms come from and over another one.
+// Niakh (2022): (3.62).
 #pragma once
 
 #include "rbvi/fem/problem.hpp"

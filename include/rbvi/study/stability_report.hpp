@@ -1,5 +1,5 @@
 // The inf-sup constants of a finished model, over sets of parameters and, where contact follows the
-// displacement, of the states of its iterations.
+// displacement, of the states of its iterations. Niakh (2022): (1.13), (A.3), (A.4).
 #pragma once
 
 #include "rbvi/fem/problem.hpp"
