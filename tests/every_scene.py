@@ -95,5 +95,22 @@ def patches():
                       ["-formulation", "nitsche", "-bodies", "one", "-degree", "2"], [], mu)
 
 
+def parts():
+    """Of many parameters, on coarse meshes that gmsh makes of geometries."""
+    for name, edges, mu in (
+            ("bolted_flange", 16, ["1500,0.15,1e6,5,0.2", "3000,0.05,8e5,6,0.3"]),
+            ("seal", 24, ["0.6,0.2,0.3,0.45", "0.8,0.15,0.4,0.48"]),
+            ("bracket", 12, ["6,300,0,0.2,4", "7,500,0.01,0.3,3"]),
+            ("joint", 16, ["900,600,30,0.2,7000", "1000,300,20,0.3,9000"])):
+        yield Formulation(name, CASES / name / "case.yaml", ["-set", f"mesh.set.edges={edges}"],
+                          ["-train", "random:10:1"], mu)
+
+
+def every_term():
+    """One case on which every kind of term acts."""
+    yield Formulation("every_term", CASES.parent / "tests/baseline/every_term.yaml", [],
+                      ["-train", "random:30:1"], ["1.02,0.01,0.02,0.2,25,0.25", "0.97,-0.01,0.03,0.1,10,0.15"])
+
+
 def every_scene():
     return [*membranes(), *two_disks(), *two_disks_condensed(), *rigid_disks(), *rollers(), *patches()]
