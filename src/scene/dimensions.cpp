@@ -1,6 +1,6 @@
 #include "dimensions.hpp"
 
-#include "rbvi/core/text.hpp"
+#include <algorithm>
 
 namespace rbvi {
 
@@ -42,38 +42,22 @@ std::optional<Dimension> power(const Operand &one, double exponent) {
 }
 
 Operand result(Operation operation, const Operand *of) {
-  switch (operation) {
-  case Operation::negate:
+  using Op = Operation;
+  const auto is = [&](std::initializer_list<Op> some) {
+    return std::ranges::find(some, operation) != some.end();
+  };
+  if (is({Op::negate}))
     return {of[0].dimension, of[0].number ? std::optional(-*of[0].number) : std::nullopt};
-  case Operation::abs:
-    return {of[0].dimension};
-  case Operation::sqrt:
-    return {power(of[0], 0.5)};
-  case Operation::multiply:
-    return {product(of[0], of[1], 1)};
-  case Operation::divide:
-    return {product(of[0], of[1], -1)};
-  case Operation::power:
-    return {of[1].number ? power(of[0], *of[1].number) : std::nullopt};
-  case Operation::add:
-  case Operation::subtract:
-  case Operation::min:
-  case Operation::max:
-  case Operation::hypot:
-  case Operation::choose:
+  if (is({Op::abs})) return {of[0].dimension};
+  if (is({Op::sqrt})) return {power(of[0], 0.5)};
+  if (is({Op::multiply, Op::divide}))
+    return {product(of[0], of[1], operation == Op::multiply ? 1 : -1)};
+  if (is({Op::power})) return {of[1].number ? power(of[0], *of[1].number) : std::nullopt};
+  if (is({Op::add, Op::subtract, Op::min, Op::max, Op::hypot, Op::choose}))
     return {common(of[0], of[1])};
-  case Operation::less:
-  case Operation::at_most:
-  case Operation::greater:
-  case Operation::at_least:
-  case Operation::equal:
-  case Operation::different:
-  case Operation::atan2:
+  if (is({Op::less, Op::at_most, Op::greater, Op::at_least, Op::equal, Op::different, Op::atan2}))
     (void)common(of[0], of[1]);
-    return {};
-  default:
-    return {};
-  }
+  return {};
 }
 
 } // namespace

@@ -4,7 +4,6 @@
 #include "rbvi/core/validity.hpp"
 
 #include <algorithm>
-#include <cctype>
 
 namespace rbvi {
 
@@ -52,16 +51,11 @@ double size_of(const Reader &reader, const std::string &unit) {
 std::string value_in_unit(Reader &reader, const std::string &name, const std::string &unit) {
   const double size = size_of(reader, unit);
   if (size == 1) return name;
-  std::string value = name + "_in_";
-  for (const char c : unit)
-    value += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  std::string value = name + "_in_its_unit";
   while (section(reader, "parameters").find(value) != nullptr ||
          section(reader, "let").find(value) != nullptr)
     value += '_';
-  reader.lets.push_back(
-      {name, parse_expression(size > 1 ? value + " * " + shortest_number(size)
-                                       : value + " / " +
-                                             shortest_number(into_unit(1, unit, *reader.units)))});
+  reader.lets.push_back({name, parse_expression(shortest_number(size) + " * " + value)});
   return value;
 }
 
@@ -91,9 +85,7 @@ void read_constants(Reader &reader, Defects &defects) {
         check_new(reader, own);
         const Parameter constant = parameter_in(reader, own, value);
         reader.constants.push_back(constant);
-        const double seen = reader.units && !constant.unit.empty()
-                                ? from_unit(constant.value, constant.unit, *reader.units)
-                                : constant.value;
+        const double seen = size_of(reader, constant.unit) * constant.value;
         reader.lets.push_back({own, Expression({{Operation::number, 0, seen}}, {})});
       });
 }

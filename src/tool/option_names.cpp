@@ -56,7 +56,7 @@ Error unknown_option(const std::string &name, const std::string &where,
 } // namespace
 
 std::vector<std::string> taken_names() {
-  std::vector<std::string> names{"h", "help", "v", "version"};
+  std::vector<std::string> names{"help", "version"};
   names.insert(names.end(), petsc_names.begin(), petsc_names.end());
   for (const Option &option : tool_options())
     if (option.name != "mu") names.push_back(option.name);
