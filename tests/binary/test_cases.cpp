@@ -293,7 +293,7 @@ TEST_F(Cases, ParametersHaveUnitsAndMayBeCalledMu) {
       "mesh: {built_in: one_block, degree: 1}\n"
       "parameters:\n  depth: {range: [10, 100], default: 50, unit: um}\n"
       "  mu: {range: [0.1, 0.5], default: 0.3}\n  young: {default: 10 MPa}\n"
-      "materials: {b: {at: all, E: young, nu: 0}}\nimposed: {top: {at: top, ux: 0.2, uy: -depth}}\n"
+      "materials: {b: {at: all, E: young, nu: 0}}\nimposed: {top: {at: top, ux: 0, uy: -depth}}\n"
       "contact: {floor: {at: contact, against: {plane: {normal: [0, -1], position: 0}}, "
       "friction: {coulomb: mu}}}\noutputs: {share: {value: mu, point: [0.5, 0.25]}}\n"
       "train: grid:3,2\n");
@@ -317,7 +317,7 @@ TEST_F(Cases, ParametersHaveUnitsAndMayBeCalledMu) {
   for (std::size_t at = 0; (at = other.find("mu", at)) != std::string::npos; at += 3)
     other.replace(at, 2, "out");
   spill("out.yaml", other);
-  expect_all_refused({{"check out.yaml", "out.yaml:6:3: -out is an option of the program"}});
+  expect_all_refused({{"check out.yaml", "out.yaml:7:3: -out is an option of the program"}});
 }
 
 /// The command line, its paths, a variant, choices and the file.
