@@ -74,6 +74,7 @@ void NitscheSolver::run(bool nested, Vec u, NitscheSolution &result) {
     ++result.outer_iterations;
     if (loop_end) loop_end(system.on_layer(u), system.bounds);
     if (!nested) return;
+    const Vector used = system.bounds;
     system.bounds =
         following.next(laws, nitsche_pressures(system.faces, system.on_layer(u)), system.bounds);
     RBVI_CALL(VecAXPY(before.get(), -1, u));
@@ -81,7 +82,10 @@ void NitscheSolver::run(bool nested, Vec u, NitscheSolution &result) {
     const bool rests = change <= round_off && change > stagnant * last_change;
     // The first bounds are those of the start, not of u.
     const bool settled = result.outer_iterations > 1 && (change <= bound_accuracy || rests);
-    if (settled && system.tolerance <= accuracy) return;
+    if (settled && system.tolerance <= accuracy) {
+      system.bounds = used; // under which forces balance
+      return;
+    }
     last_change = change;
     system.tolerance = std::clamp(1e-2 * change, accuracy, system.tolerance);
     if (result.outer_iterations == most_outer_iterations)
