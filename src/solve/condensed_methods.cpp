@@ -170,7 +170,13 @@ public:
     for (int pass = 0; pass < most_refinements && !(found.result.kkt.largest() <= allowed());
          ++pass) {
       options.tolerance /= 100;
-      if (!goes_on(found, task, options, op)) break;
+      const FollowingResult before = std::move(found);
+      op = task.op;
+      found = solve_from({before.steps.state, before.steps.start}, task, options, op);
+      found.result.iterations += before.result.iterations;
+      found.steps.load_steps += before.steps.load_steps;
+      found.steps.iterates.insert(found.steps.iterates.begin(), before.steps.iterates.begin(),
+                                  before.steps.iterates.end());
     }
     auto &[result, steps] = found;
     measure(problem_, op, op.weights, result);
@@ -191,24 +197,6 @@ private:
     found.result.kkt =
         kkt_residual(problem_.trace(), op, found.result.free_u.get(), found.result.lambda);
     return found;
-  }
-  /// From where it is; false, and as it was, where the steps do not settle.
-  bool goes_on(FollowingResult &found, const ContactTask &task, const NonlinearOptions &options,
-               Operators &op) {
-    try {
-      Operators next = task.op;
-      FollowingResult closer =
-          solve_from({found.steps.state, found.steps.start}, task, options, next);
-      closer.result.iterations += found.result.iterations;
-      closer.steps.load_steps = std::max(closer.steps.load_steps, found.steps.load_steps);
-      auto &states = closer.steps.iterates;
-      states.insert(states.begin(), found.steps.iterates.begin(), found.steps.iterates.end());
-      op = std::move(next);
-      found = std::move(closer);
-    } catch (const Error &) { // of every rank
-      return false;
-    }
-    return true;
   }
 };
 

@@ -73,7 +73,7 @@ void solve_linear(KSP ksp, Vec rhs, Vec x) {
 
 double solve_refined(KSP ksp, Vec rhs, Vec x) {
   constexpr int most_refinements = 2;
-  constexpr double enough = 1e-12;
+  constexpr double enough = 1e-11;
   solve_linear(ksp, rhs, x);
   Mat a = nullptr;
   RBVI_CALL(KSPGetOperators(ksp, &a, nullptr));
