@@ -20,7 +20,6 @@ bool is_vertical(const Pair &pair) {
   return pair.discretisation.projection == PairProjection::vertical;
 }
 
-/// Whether the kernels see vertical displacements alone.
 bool is_of_heights(const Pair &pair) {
   return is_vertical(pair) && pair.friction.law == FrictionLaw::none;
 }
@@ -45,7 +44,10 @@ public:
     return rbvi::nodal_forces(partners(mu, at), multipliers_, of);
   }
   PointForces point_forces(const FullMu &mu, const ContactState &at, const Vector &of) const final {
-    return rbvi::point_forces(partners(mu, at), multipliers_, of);
+    Partners found = partners(mu, at);
+    const Curves rest = curves(images(scene_.map, mu, mesh_.points)); // of the arms
+    if (pair_.large) found.slave = rest.slave, found.master = rest.master;
+    return rbvi::point_forces(found, multipliers_, of);
   }
   void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                double least, Outputs &outputs) const override;
@@ -53,7 +55,6 @@ public:
   Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool whole) override;
 
 private:
-  /// Both curves, whose nodes are those of the mesh.
   struct Curves {
     NodalCurve slave, master;
   };
@@ -194,7 +195,6 @@ ContactOperators PairInterface::operators_at(const FullMu &mu, const ContactStat
   }
 }
 
-/// On an axis of symmetry; a macro-edge always has a node that moves.
 std::vector<Index> PairInterface::partly_fixed() const {
   std::vector<Index> result;
   if (multipliers_.space() == MultiplierSpace::nodes && friction())
