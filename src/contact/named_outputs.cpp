@@ -6,8 +6,8 @@
 #include "rbvi/element/lagrange.hpp"
 #include "rbvi/element/output_sums.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace rbvi {
 
@@ -46,81 +46,53 @@ void check_outputs(const Scene &scene) {
 
 ContactShares contact_shares(const Scene &scene, const OutputCells &cells,
                              const std::vector<std::vector<int>> &nodes) {
-  std::map<int, std::vector<std::set<int>>> held;
-  const auto per_cell = static_cast<std::size_t>(nodes_per_cell(scene.dim, scene.degree));
-  for (const OutputCells::Part &part : cells.parts)
-    if (const int contact = contact_of_part(part); contact >= 0)
-      for (std::size_t i = 0; i < per_cell; ++i)
-        if (((part.held >> i) & 1) != 0) {
-          held[part.output].resize(nodes.size());
-          held[part.output][contact].insert(
-              cells.nodes[cells.cells[static_cast<std::size_t>(part.cell) * per_cell + i]]);
-        }
   ContactShares shares;
-  for (const auto &[output, of_contacts] : held)
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      std::vector<Index> &own = shares[output].emplace_back();
-      for (std::size_t k = 0; k < nodes[i].size(); ++k)
-        if (of_contacts[i].contains(nodes[i][k])) own.push_back(static_cast<Index>(k));
+  const auto per_cell = static_cast<std::size_t>(nodes_per_cell(scene.dim, scene.degree));
+  for (const OutputCells::Part &part : cells.parts) {
+    const int contact = contact_of_part(part);
+    for (std::size_t i = 0; contact >= 0 && i < per_cell; ++i) {
+      if (((part.held >> i) & 1) == 0) continue;
+      const auto cell = static_cast<std::size_t>(part.cell);
+      const std::vector<int> &of = nodes[contact];
+      const auto found = std::ranges::find(of, cells.nodes[cells.cells[cell * per_cell + i]]);
+      std::vector<std::vector<Index>> &own = shares[part.output];
+      own.resize(nodes.size());
+      if (found != of.end() &&
+          std::ranges::find(own[contact], found - of.begin()) == own[contact].end())
+        own[contact].push_back(found - of.begin());
     }
+  }
   return shares;
 }
 
-namespace {
-
-/// What contact pushes the nodes of reactions with.
-class SharedForces {
-public:
-  SharedForces(const Scene &scene, const Contact &contact, const FullMu &mu,
-               const OutputSources &sources, const Vector &lambda)
-      : scene_(scene), contact_(contact), mu_(mu), sources_(sources), lambda_(lambda),
-        forces_(contact.interfaces.size()) {}
-  /// Of the whole domain; 0 of an output without such nodes.
-  double along(const Point &direction, int output) {
-    const auto shares = sources_.shares.find(output);
-    double force = 0;
-    for (std::size_t i = 0; shares != sources_.shares.end() && i < forces_.size(); ++i) {
-      const std::vector<Index> &nodes = shares->second[i];
-      const auto components = static_cast<Index>(contact_.interfaces[i]->mesh().components);
-      for (const Index node : nodes)
-        for (Index c = 0; c < components; ++c)
-          force += direction[c] * of_interface(i)[node * components + c];
-    }
-    return image_count(scene_.mirrors) * force;
-  }
-
-private:
-  const Vector &of_interface(std::size_t i) {
-    const ContactInterface &interface = *contact_.interfaces[i];
-    if (forces_[i].size() > 0) return forces_[i];
-    ContactState state;
-    if (interface.follows_state())
-      state.displacement = at_columns(interface.mesh(), sources_.of_interface(i));
-    return forces_[i] = interface.nodal_forces(
-               mu_, state, lambda_.segment(contact_.first_row[i], interface.dual().size()));
-  }
-
-  const Scene &scene_;
-  const Contact &contact_;
-  const FullMu &mu_;
-  const OutputSources &sources_;
-  const Vector &lambda_;
-  std::vector<Vector> forces_;
-};
-
-} // namespace
-
 void add_named_outputs(const Scene &scene, const Contact &contact, const FullMu &mu,
                        const OutputSources &sources, const Vector &lambda, Outputs &outputs) {
-  SharedForces shared(scene, contact, mu, sources, lambda);
+  std::vector<Vector> forces(contact.interfaces.size()); // at nodes, once for all reactions
+  const auto shared = [&](const Point &direction, int output) {
+    const auto shares = sources.shares.find(output);
+    double force = 0;
+    for (std::size_t i = 0; shares != sources.shares.end() && i < forces.size(); ++i) {
+      const ContactInterface &interface = *contact.interfaces[i];
+      const std::vector<Index> &nodes = shares->second[i];
+      if (nodes.empty()) continue;
+      if (forces[i].size() == 0)
+        forces[i] = interface.nodal_forces(
+            mu, {.displacement = at_columns(interface.mesh(), sources.of_interface(i))},
+            lambda.segment(contact.first_row[i], interface.dual().size()));
+      for (const Index node : nodes)
+        for (Index c = 0; c < interface.mesh().components; ++c)
+          force += direction[c] * forces[i][node * interface.mesh().components + c];
+    }
+    return image_count(scene.mirrors) * force;
+  };
   outputs.named.clear();
   std::vector<std::optional<std::vector<ContactLine>>> of(contact.interfaces.size());
   for (std::size_t k = 0; k < scene.outputs.size(); ++k) {
     const OutputForm &form = scene.outputs[k];
     double value = 0;
     if (has_cells(form)) {
-      value =
-          sources.of_cells(static_cast<int>(k)) + shared.along(form.vector, static_cast<int>(k));
+      const auto output = static_cast<int>(k);
+      value = sources.of_cells(output) + shared(form.vector, output);
     } else {
       OutputLines lines(form, mu, scene.mirrors);
       for (std::size_t i = 0; i < of.size(); ++i) {

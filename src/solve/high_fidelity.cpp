@@ -45,6 +45,7 @@ void measure(const Problem &problem, const Operators &op, const Vector &weights,
   of_outputs.weights = weights;
   of_outputs.state = op.state;
   contact_outputs(problem.contact(), op.mu, of_outputs, result.lambda, 0, outputs);
+  if (!result.lambda.allFinite()) return; // which the residual says
   // Of several ranks each may have its own rows alone.
   check_forces(problem.scene(), problem.contact(), op.mu, op.state, result.lambda,
                ranks_of(problem.comm()) == 1 ? &op.b : nullptr);
