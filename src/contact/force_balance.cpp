@@ -95,7 +95,10 @@ void check_forces(const Scene &scene, const Contact &contact, const FullMu &mu,
     if (interface.nitsche() != nullptr) continue;
     const Index first = contact.first_row[i], count = interface.dual().size();
     const Vector own = lambda.segment(first, count);
-    const Vector solved = b == nullptr ? Vector() : b->middleRows(first, count).transpose() * own;
+    // B of contact that follows the displacement may be that of the iterate before.
+    const Vector solved = b == nullptr || interface.follows_state()
+                              ? Vector()
+                              : b->middleRows(first, count).transpose() * own;
     const std::vector<TwoRoads> sides = two_roads(scene, interface, mu, state, own, solved);
     for (std::size_t side = 0; side < sides.size(); ++side)
       if (const double apart = sides[side].difference(); !(apart <= tolerance))
