@@ -120,7 +120,11 @@ void add_gap_error(const Scene &scene, const Contact &contact, const FullMu &mu,
   for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
     const ContactInterface &interface = *contact.interfaces[i];
     const Vector own = lambda.segment(contact.first_row[i], interface.dual().size());
-    largest = std::max(largest, interface.gap_error(mu, of_interface(i), own));
+    try {
+      largest = std::max(largest, interface.gap_error(mu, of_interface(i), own));
+    } catch (const Error &) { // the deformed bodies do not even face each other
+      largest = std::max(largest, 1.0);
+    }
   }
   outputs.gap_error = largest;
 }

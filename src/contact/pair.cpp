@@ -9,7 +9,6 @@
 #include "rbvi/element/imposed.hpp"
 
 #include <algorithm>
-#include <map>
 #include <optional>
 
 namespace rbvi {
@@ -235,40 +234,32 @@ Curvature PairInterface::curvature(const FullMu &mu, const ContactState &state,
   return result;
 }
 
-/// Between the vertices of the slave and the deformed master.
+/// At vertices of the slave. Throws failure where the deformed bodies do not face each other.
 double PairInterface::gap_error(const FullMu &mu, const Vector &u, const Vector &lambda) const {
   if (pair_.large) return 0;
   std::vector<Point> nodes = images(scene_.map, mu, mesh_.points), moved(nodes.size());
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const auto node = static_cast<Index>(2 * k);
-    moved[k] = Point{u[node], u[node + 1], 0} +
+    const auto first = static_cast<Index>(2 * k);
+    moved[k] = Point{u[first], u[first + 1], 0} +
                (scene_.motion ? scene_.motion(mu, mesh_.points[k]) : Point{});
     nodes[k] = nodes[k] + moved[k];
   }
-  const Curves now = curves(nodes), by = curves(moved);
-  const PartnerSearch search_now(now.slave, now.master,
-                                 {sections_, averaged_normals(now.master, sections_, fixed_)});
+  const Partners rest = at_rest_ ? *at_rest_ : search(mu, {}, {});
+  Curves by = curves(moved), at = curves(nodes);
+  MasterField field{sections_, averaged_normals(at.master, sections_, fixed_)};
+  const Partners now =
+      find_partners(std::move(at.slave), std::move(at.master), {}, std::move(field), rest.hats);
   const auto vertex = [&](const PairPoint &p) {
     return slave_->ends[p.slave_edge][p.s > 0.5 ? 1 : 0];
   };
-  std::map<Index, double> real;
-  for (PairPoint p : search_now.at_vertices()) {
-    try {
-      (void)search_now.project(p);
-    } catch (const Error &) { // nothing is faced from there
-      continue;
-    }
-    real[vertex(p)] =
-        dot(p.normal, now.slave.at(p.slave_edge, p.s) - now.master.at(p.master_edge, p.t));
-  }
   GapErrors errors(lambda.head(multipliers_.count()));
-  const Partners rest = at_rest_ ? *at_rest_ : search(mu, {}, {});
   for (const PairPoint &p : rest.vertices) {
-    const auto found = real.find(vertex(p));
-    if (found == real.end()) continue;
-    const double way =
-        dot(p.normal, by.slave.at(p.slave_edge, p.s) - by.master.at(p.master_edge, p.t));
-    errors.add(multipliers_.sum(lambda, p.slave_edge, p.s), way, p.gap + way, found->second);
+    const auto found = std::ranges::find(now.vertices, vertex(p), vertex);
+    if (found == now.vertices.end()) continue;
+    const double slave = dot(p.normal, by.slave.at(p.slave_edge, p.s)),
+                 master = dot(p.normal, by.master.at(p.master_edge, p.t));
+    errors.add(multipliers_.sum(lambda, p.slave_edge, p.s),
+               std::max(std::abs(slave), std::abs(master)), p.gap + slave - master, found->gap);
   }
   return errors.largest();
 }

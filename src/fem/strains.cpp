@@ -2,24 +2,9 @@
 #include "rbvi/fem/problem.hpp"
 #include "rbvi/par/collective.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <numbers>
 
 namespace rbvi {
-
-namespace {
-
-/// Whether its symmetric part has an eigenvalue above large_strain, or its other part turns by
-/// more.
-bool is_large(const Eigen::Matrix3d &gradient) {
-  const Eigen::Matrix3d strain = (gradient + gradient.transpose()) / 2,
-                        turn = (gradient - gradient.transpose()) / 2;
-  if (strain.norm() <= large_strain && turn.norm() <= large_strain) return false;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> of(strain, Eigen::EigenvaluesOnly);
-  return std::max(of.eigenvalues().cwiseAbs().maxCoeff(), turn.norm() / std::sqrt(2)) >
-         large_strain;
-}
-
-} // namespace
 
 double strained_share(const Problem &problem, const FullMu &mu, const Vector &u) {
   const Mesh &mesh = problem.mesh();
@@ -42,7 +27,9 @@ double strained_share(const Problem &problem, const FullMu &mu, const Vector &u)
     const double volume = geometry.volume * circumference(problem.scene().axisymmetric,
                                                           point_at(cell.mapped, middle, dim + 1));
     volumes[1] += volume;
-    if (is_large(gradient)) volumes[0] += volume;
+    const double strain = (gradient + gradient.transpose()).norm() / 2,
+                 turn = (gradient - gradient.transpose()).norm() / (2 * std::numbers::sqrt2);
+    if (std::max(strain, turn) > large_strain) volumes[0] += volume;
   }
   over_ranks(problem.comm(), MPI_SUM, volumes);
   return volumes[0] / volumes[1];
