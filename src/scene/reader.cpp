@@ -147,6 +147,42 @@ Factor factor_of(Reader &reader, const Expression &value) {
   return {expanded(value, reader.lets).text(), coefficient_of(formula), dependence_of(formula)};
 }
 
+namespace {
+
+/// What varies in a product, factor by factor, so that terms are known to share one; the rest is
+/// multiplied into `constant`.
+void split_product(const Program &product, const std::vector<std::string> &names,
+                   std::vector<Expression> &factors, double &constant) {
+  const Expression whole(product, names);
+  const Operation last = product.back().operation;
+  auto right = product.end() - 1; // where the last operand begins
+  for (int wanted = 1; wanted > 0 && right != product.begin();)
+    wanted += operands_of((--right)->operation) - 1;
+  const Program left(product.begin(), right), of_right(right, product.end() - 1);
+  if (const std::optional<double> value = whole.constant()) {
+    constant *= *value;
+  } else if (last == Operation::negate) {
+    constant = -constant;
+    split_product(of_right, names, factors, constant);
+  } else if (last == Operation::multiply) {
+    split_product(left, names, factors, constant);
+    split_product(of_right, names, factors, constant);
+  } else if (last == Operation::divide) {
+    split_product(left, names, factors, constant);
+    Program inverse{{Operation::number, 0, 1}};
+    inverse.insert(inverse.end(), right, product.end());
+    const Expression under(of_right, names);
+    if (under.constant())
+      constant /= *under.constant();
+    else
+      factors.emplace_back(inverse, names);
+  } else {
+    factors.push_back(whole);
+  }
+}
+
+} // namespace
+
 std::optional<std::vector<Product>> products_of(Reader &reader, const Expression &value) {
   const Expression whole = expanded(value, reader.lets);
   const auto sum = separated(whole, reader.values);
@@ -155,7 +191,12 @@ std::optional<std::vector<Product>> products_of(Reader &reader, const Expression
   for (const auto &[in_parameters, at_point] : *sum) {
     if (in_parameters.constant() == 0 || at_point.constant() == 0) continue;
     Product product{{}, at_point};
-    if (in_parameters.constant() != 1) product.factors = {factor_of(reader, in_parameters)};
+    std::vector<Expression> factors;
+    double constant = 1;
+    split_product(in_parameters.program(), in_parameters.free_names(), factors, constant);
+    if (constant != 1) factors.push_back(Expression({{Operation::number, 0, constant}}, {}));
+    for (const Expression &factor : factors)
+      product.factors.push_back(factor_of(reader, factor));
     products.push_back(std::move(product));
   }
   return products;

@@ -52,8 +52,9 @@ TEST(Case, AStiffnessIsExactWhereItSeparates) {
   for (const Term &term : scene.a)
     EXPECT_TRUE(term.theta);
   const Term &first = scene.a.front();
-  ASSERT_EQ(first.theta->size(), 2U);
+  ASSERT_EQ(first.theta->size(), 3U);
   EXPECT_EQ(first.theta->front().parameters, std::vector<int>{1});
+  EXPECT_EQ(first.theta->at(1).value({0.05, 2, 0.25}), 15);
   EXPECT_EQ(scene.coordinates.count(1), 1U) << "more than a decade: logarithmic";
   EXPECT_EQ(scene.coordinates.count(2), 1U) << "a Poisson's ratio";
   EXPECT_EQ(scene.coordinates.count(0), 0U);
