@@ -10,7 +10,7 @@
 #include "rbvi/tool/commands.hpp"
 
 #include <algorithm>
-#include <cctype>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <set>
@@ -21,24 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A name or a path, plain where YAML takes it for one.
-std::string in_flow(const std::string &text) {
-  const bool plain = std::ranges::all_of(text, [](unsigned char c) {
-    return std::isalnum(c) != 0 || std::string_view("_./-").find(char(c)) != std::string_view::npos;
-  });
-  return plain && !text.starts_with('-') && text != "null" ? text : in_quotes(text);
-}
-
 /// A boundary of a mesh that is all of its surface.
 struct Side {
-  std::string name;
-  std::set<int> vertices, bodies;
-  std::vector<std::array<Point, 2>> edges;
+  std::string name; ///< in quotes
+  int body = 0;
+  std::set<int> vertices{};
+  std::vector<std::array<Point, 2>> edges{};
   double height = 0; ///< mean of its edges
-
-  bool meets(const Side &other) const {
-    return std::ranges::any_of(vertices, [&](int v) { return other.vertices.contains(v); });
-  }
 };
 
 std::vector<Side> sides_of(const SerialMesh &mesh, const Scene &scene) {
@@ -46,104 +35,83 @@ std::vector<Side> sides_of(const SerialMesh &mesh, const Scene &scene) {
   const MeshSurface surface = surface_of(mesh, scene);
   std::vector<Side> sides;
   for (const auto &[name, ignored] : mesh.boundary) {
-    Side side{name, {}, {}, {}};
-    for (const SerialFacet &facet : facets_with_cells(mesh, name)) {
-      side.vertices.insert(facet.vertices.begin(), facet.vertices.begin() + 2);
-      side.bodies.insert(bodies[facet.cell]);
-      side.edges.push_back({mesh.points[facet.vertices[0]], mesh.points[facet.vertices[1]]});
-      side.height += (side.edges.back()[0][1] + side.edges.back()[1][1]) / 2;
+    Side side{in_quotes(name)};
+    for (const auto &[cell, vertices] : facets_with_cells(mesh, name)) {
+      side.body = bodies[cell];
+      side.vertices.insert(vertices.begin(), vertices.begin() + 2);
+      side.edges.push_back({mesh.points[vertices[0]], mesh.points[vertices[1]]});
+      side.height += side.edges.back()[0][1] + side.edges.back()[1][1];
     }
-    side.height /= static_cast<double>(side.edges.size());
+    side.height /= 2 * static_cast<double>(side.edges.size());
     if (std::ranges::count(surface.groups.at(name), true) == std::ssize(side.edges))
       sides.push_back(std::move(side));
   }
   return sides;
 }
 
-double distance_to(const Point &x, const std::array<Point, 2> &edge) {
-  const Point along = edge[1] - edge[0];
-  const double t = std::clamp(dot(x - edge[0], along) / dot(along, along), 0.0, 1.0);
-  return norm(x - (edge[0] + t * along));
-}
-
-/// Whether the middle of some edge of one lies on the other, which is of other bodies.
-bool touch(const Side &one, const Side &other, double tolerance) {
-  if (std::ranges::any_of(one.bodies, [&](int b) { return other.bodies.contains(b); }))
-    return false;
-  return std::ranges::any_of(one.edges, [&](const auto &edge) {
-    const Point middle = 0.5 * (edge[0] + edge[1]);
-    return std::ranges::any_of(
-        other.edges, [&](const auto &of) { return distance_to(middle, of) <= tolerance; });
-  });
+/// Whether the middle of some edge of one lies on the other, which is of another body.
+bool touches(const Side &one, const Side &other, double tolerance) {
+  const auto is_at = [&](const Point &x, const std::array<Point, 2> &edge) {
+    const Point along = edge[1] - edge[0];
+    const double t = std::clamp(dot(x - edge[0], along) / dot(along, along), 0.0, 1.0);
+    return norm(x - (edge[0] + t * along)) <= tolerance;
+  };
+  return one.body != other.body && std::ranges::any_of(one.edges, [&](const auto &edge) {
+           return std::ranges::any_of(
+               other.edges, [&](const auto &of) { return is_at(0.5 * (edge[0] + edge[1]), of); });
+         });
 }
 
 /// Contact where bodies touch, else of the lowest side with a floor; each body held at the side
-/// that is farthest from it, those above the lowest contact pushed down.
-class CaseOfMesh {
-public:
-  CaseOfMesh(const SerialMesh &mesh, const Scene &scene, const std::string &file)
-      : extent_(extent_of(mesh)), sides_(sides_of(mesh, scene)) {
-    if (sides_.size() < 2)
-      throw bad_input("the mesh " + file + " has too few named boundaries (" +
-                      std::to_string(sides_.size()) + ")" +
-                      ": a case needs one that is held and one that touches, as physical curves");
-    find_contacts(mesh);
-    for (int body = 0; body <= std::ranges::max(bodies_of(mesh)); ++body)
-      hold(body);
-  }
-  std::string contacts, imposed;
-  double depth() const { return 0.01 * extent_; }
+/// that is farthest from it, those above the last contact pushed down.
+struct CaseOfMesh {
+  std::vector<Side> sides;
+  std::vector<const Side *> in_contact{}, held{};
+  std::string contact = "", imposed = "";
 
-private:
-  void find_contacts(const SerialMesh &mesh) {
-    for (const Side &one : sides_)
-      for (const Side &other : sides_)
-        if (one.height >= other.height && &one != &other && free(one) && free(other) &&
-            (touch(one, other, 1e-6 * extent_) || touch(other, one, 1e-6 * extent_)))
-          add_contact("contact " + std::to_string(contact_.size() / 2 + 1), in_flow(other.name),
-                      {&one, &other});
-    if (!contact_.empty()) return;
-    const Side &lowest = *std::ranges::min_element(sides_, {}, &Side::height);
-    double position = -lowest.height;
-    for (const int v : lowest.vertices)
+  static bool is_in(const std::vector<const Side *> &list, const Side &side) {
+    return std::ranges::find(list, &side) != list.end();
+  }
+  void find_contact(const SerialMesh &mesh) {
+    const double tolerance = 1e-6 * extent_of(mesh);
+    for (const Side &one : sides)
+      for (const Side &other : sides)
+        if (one.height >= other.height && !is_in(in_contact, one) && !is_in(in_contact, other) &&
+            (touches(one, other, tolerance) || touches(other, one, tolerance))) {
+          in_contact.insert(in_contact.end(), {&one, &other});
+          contact += "  contact " + std::to_string(in_contact.size() / 2) + ": {at: " + one.name +
+                     ", against: " + other.name + "}\n";
+        }
+    if (!in_contact.empty()) return;
+    in_contact = {&*std::ranges::min_element(sides, {}, &Side::height)};
+    double position = -in_contact[0]->height;
+    for (const int v : in_contact[0]->vertices)
       position = std::max(position, -mesh.points[v][1]);
-    add_contact("floor",
-                "{plane: {normal: [0, -1], position: " + shortest_number(position + 0.0) + "}}",
-                {&lowest});
+    contact = "  floor: {at: " + in_contact[0]->name +
+              ", against: {plane: {normal: [0, -1], position: " + shortest_number(position + 0.0) +
+              "}}}\n";
   }
-  bool free(const Side &side) const { return std::ranges::find(contact_, &side) == contact_.end(); }
-  void add_contact(const std::string &name, const std::string &against,
-                   const std::vector<const Side *> &sides) {
-    contacts +=
-        "  " + name + ": {at: " + in_flow(sides.front()->name) + ", against: " + against + "}\n";
-    contact_.insert(contact_.end(), sides.begin(), sides.end());
-  }
+  /// Best where it shares no vertex with contact. A body without such a side is left to contact.
   void hold(int body) {
-    const Side *best = nullptr;
-    const auto rank = [&](const Side &side) {
-      const bool meets =
-          std::ranges::any_of(contact_, [&](const Side *other) { return side.meets(*other); });
-      return std::pair(!meets, std::abs(side.height - contact_.back()->height));
+    const double height = in_contact.back()->height;
+    const auto worth = [&](const Side &side) {
+      const bool apart = std::ranges::none_of(in_contact, [&](const Side *other) {
+        return std::ranges::any_of(side.vertices,
+                                   [&](int v) { return other->vertices.contains(v); });
+      });
+      return std::pair(apart, std::abs(side.height - height));
     };
-    for (const Side &side : sides_)
-      if (side.bodies.contains(body) && free(side) && !held_.contains(&side) &&
-          (best == nullptr || rank(side) > rank(*best)))
+    const Side *best = nullptr;
+    for (const Side &side : sides)
+      if (side.body == body && !is_in(in_contact, side) &&
+          (best == nullptr || worth(side) > worth(*best)))
         best = &side;
-    if (best == nullptr) return; // by contact alone
-    held_.insert(best);
-    imposed += "  held " + std::to_string(held_.size()) + ": {at: " + in_flow(best->name) +
-               ", ux: 0, uy: " + (best->height > contact_.back()->height ? "-depth" : "0") + "}\n";
+    if (best == nullptr) return;
+    held.push_back(best);
+    imposed += "  held " + std::to_string(held.size()) + ": {at: " + best->name +
+               ", ux: 0, uy: " + (best->height > height ? "-depth" : "0") + "}\n";
   }
-
-  double extent_;
-  std::vector<Side> sides_;
-  std::vector<const Side *> contact_;
-  std::set<const Side *> held_;
 };
-
-std::string list(const std::vector<std::string> &names) {
-  return names.empty() ? "none" : joined(names);
-}
 
 /// A mesh or a geometry as a case in a folder.
 std::string case_of(const std::string &file, const fs::path &folder) {
@@ -154,13 +122,21 @@ std::string case_of(const std::string &file, const fs::path &folder) {
       file.ends_with(".geo") ? meshed(MPI_COMM_SELF, file, {}, folder_of_meshes()) : file;
   const auto [regions, boundaries] = parts_of_gmsh(mesh_file, 2);
   scene.contacts.emplace_back().entities.parts = boundaries; // these may lie on each other
-  const CaseOfMesh made(mesh_with_groups(scene, mesh_file), scene, file);
+  const SerialMesh mesh = mesh_with_groups(scene, mesh_file);
+  CaseOfMesh made{sides_of(mesh, scene)};
+  if (made.sides.size() < 2)
+    throw bad_input("the mesh " + file + " has too few named boundaries (" +
+                    std::to_string(made.sides.size()) +
+                    "): a case needs one that is held and one that touches, as physical curves");
+  made.find_contact(mesh);
+  for (int body = 0; body <= std::ranges::max(bodies_of(mesh)); ++body)
+    made.hold(body);
   const fs::path beside =
       fs::absolute(file).lexically_normal().lexically_relative(fs::absolute(folder));
-  return new_case(in_flow(beside.string()),
-                  "Regions of the mesh: " + list(regions) + "; boundaries: " + list(boundaries) +
-                      ".",
-                  made.imposed, made.contacts, made.depth());
+  return new_case(in_quotes(beside.string()),
+                  "Regions of the mesh: " + joined(regions) +
+                      "; boundaries: " + joined(boundaries) + ".",
+                  made.imposed, made.contact, 0.01 * extent_of(mesh));
 }
 
 } // namespace

@@ -129,7 +129,7 @@ TEST_F(Cases, AMeshOfOnesOwnBeginsACaseOfIt) {
   spill("fan.msh", mesh);
   output_of(rbvi(1, "new own -mesh fan.msh"));
   const std::string text = slurp("own/case.yaml");
-  EXPECT_TRUE(contains(text, "mesh: {file: ../fan.msh")) << text;
+  EXPECT_TRUE(contains(text, "mesh: {file: '../fan.msh'")) << text;
   EXPECT_TRUE(contains(text, "boundaries: top, [it's: #1")) << text;
   EXPECT_TRUE(contains(output_of(rbvi(1, "check own")), "no defect was found"));
 }
