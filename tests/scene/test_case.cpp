@@ -176,7 +176,7 @@ TEST(Case, AnAxisymmetricStiffnessScalesWithTheBody) {
   const Scene still = turned(""), scaled = turned("{scale: depth}"), raised = turned("[x, y + k]");
   EXPECT_TRUE(still.axisymmetric);
   EXPECT_EQ(still.fixed.front().name, axis_of_turning);
-  EXPECT_EQ(still.a.front().theta->size(), 2U);
+  EXPECT_EQ(still.a.front().theta->size(), 3U) << "k, 15, lambda of nu";
   ASSERT_EQ(scaled.a.size(), 2U);
   for (const Term &term : scaled.a)
     EXPECT_EQ(term.theta->back().value({0.07, 1, 0.3}), 0.07);
