@@ -231,7 +231,7 @@ Scene everything_acts() {
       "15}}\n"
       "materials: {rubber: {at: all, E: young, nu: 0.3, expansion: 0.01, temperature: 20*d}}\n"
       "motion: [0, -d]\n"
-      "imposed: {top: {at: top, ux: 0.3*d*x, uy: motion}}\n"
+      "imposed: {top: {at: top, ux: -0.3*d*x, uy: motion}}\n"
       "loads:\n  weight: {at: all, force: [0, -2*d]}\n  edge: {at: top, traction: [0.5, 0]}\n"
       "  sides: {at: sides, pressure: 0.2*d}\n"
       "springs: {bolt: {at: contact, direction: [1, 0], stiffness: 3, pretension: d}}\n"
