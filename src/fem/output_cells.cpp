@@ -152,8 +152,8 @@ private:
     for (int q = 0; q < std::ssize(scene_.f); ++q)
       if (!scene_.f[q].of_imposed && !(whole && scene_.f[q].form.boundary.empty()))
         add_term(held, scene_.f[q].form, a_terms + q);
-    for (int i = 0; i < std::ssize(scene_.contacts); ++i)
-      if (scene_.contacts[i].formulation == Formulation::mixed) add_contact(held, i);
+    for (int i = 0; has_multipliers(scene_) && i < std::ssize(scene_.contacts); ++i)
+      add_contact(held, i);
   }
 
   /// Whether a load on cells may do work on a translation. Those of free strains do none.
@@ -181,11 +181,11 @@ private:
   }
 
   /// Boundaries that are pushed along the direction by what no part of the reaction has: means, and
-  /// contact by Nitsche's method.
+  /// contact without multipliers.
   std::vector<std::string> pushed_otherwise(const OutputForm &form) const {
     std::vector<std::string> boundaries;
-    for (const ContactRecipe &contact : scene_.contacts)
-      if (contact.formulation != Formulation::mixed)
+    if (!has_multipliers(scene_))
+      for (const ContactRecipe &contact : scene_.contacts)
         boundaries.insert(boundaries.end(), contact.entities.parts.begin(),
                           contact.entities.parts.end());
     for (const Sum *sum : {&scene_.a, &scene_.f})
