@@ -182,7 +182,8 @@ const std::vector<CaseKey> all_keys{
     {"outputs.*", "point", "[number, number]", "of the mesh, where a value is taken", false, "m"},
     {"outputs.*", "integral", "expression",
      "in parameters, x, y, the displacement ux, uy (of a membrane u); over contacts pressure, gap, "
-     "tangential (the tangential stress) and slip; over boundaries nx, ny (the normal); in the "
+     "tangential (the tangential stress), slip, contact and stick (1 or 0); over boundaries nx, ny "
+     "(the normal); in the "
      "body, on boundaries and at points sigma_xx, sigma_yy, sigma_zz, sigma_xy, von_mises, "
      "strain_energy (elastic energy per volume)"},
     {"outputs.*", "mean", "expression", "its integral over the length or area"},

@@ -50,7 +50,8 @@ TEST(WrongCase, Outputs) {
       {outputs("{force: {max: gap, at: flor}}"),
        "the built-in mesh one_block has no boundary 'flor'"},
       {outputs("{force: {max: gap, at: top}}"),
-       "there is no 'gap' at 'top': pressure, gap, tangential and slip are over contacts (floor)"},
+       "there is no 'gap' at 'top': pressure, gap, tangential, slip, contact and stick are over "
+       "contacts (floor)"},
       {outputs("{force: {max: nx, at: floor}}"), "there is no 'nx' at 'floor'"},
       {outputs("{force: {max: nx, in: all}}"), "there is no 'nx' there"},
       {outputs("{force: {max: u, in: all}}"), "u is that of a membrane"},
