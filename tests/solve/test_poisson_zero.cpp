@@ -33,7 +33,7 @@ TEST(PoissonZero, ForcesOfBodiesThatContactHoldsBalance) {
       const bool turned = physics == "axisymmetric";
       const std::string side = turned ? "" : "side: {at: inner, ux: 0}, ",
                         area = turned ? "3*pi" : "1";
-      for (const std::string push : {"imposed: {" + side + "top: {at: top, force_y: -f}}",
+      for (const std::string &push : {"imposed: {" + side + "top: {at: top, force_y: -f}}",
                                      "imposed: {" + (turned ? "o: {at: outer, ux: 0}" : side) +
                                          "}\nloads: {w: {at: top, "
                                          "pressure: f/(" +
