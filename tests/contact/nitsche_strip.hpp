@@ -65,7 +65,9 @@ inline SupportScene half_disk(int degree) {
 
 /// gamma0 = 0.3.
 inline NitscheLayer layer_of(const SupportScene &scene, const Strip &s) {
-  return {scene, {{scene.support.friction, rigid_contact(scene.support).facing, 0.3}}, s.cells};
+  NitscheCurve curve{scene.support.friction, rigid_contact(scene.support).facing, 0.3};
+  curve.images = Vector::Ones(std::ssize(s.cells) + 1);
+  return {scene, {curve}, s.cells};
 }
 
 } // namespace rbvi
