@@ -309,8 +309,8 @@ TEST_F(Cases, ParametersHaveUnitsAndMayBeCalledMu) {
   const std::string kilo =
       "solve -case case.yaml -mu 60,0.4 -young '20000 kPa' -depth '0.01 mm,90'";
   EXPECT_NEAR(value_of(output_of(rbvi(1, kilo)), "normal_force"), 2.4, 1e-9);
-  output_of(rbvi(1, "offline -case case.yaml -out run"));
-  const std::string query = output_of(rbvi_online("run/model.h5 --mu depth=60,mu=0.4"));
+  output_of(rbvi(1, "offline -case case.yaml -out model"));
+  const std::string query = output_of(rbvi_online("model/model.h5 --mu depth=60,mu=0.4"));
   EXPECT_NEAR(value_of(query, "normal_force"), 1.2, 1e-8);
   EXPECT_NEAR(value_of(query, "share"), 0.4, 1e-8);
   std::string other = slurp("case.yaml");
