@@ -9,8 +9,9 @@ int image_count(const MirrorPlanes &planes) {
   return 1 << planes.size();
 }
 
+constexpr double round_off = 1e-7; // of the size of what is asked for
+
 Vector image_counts(const MirrorPlanes &planes, const std::vector<Point> &points) {
-  constexpr double round_off = 1e-7;
   Vector counts = Vector::Constant(std::ssize(points), image_count(planes));
   if (planes.empty() || points.empty()) return counts;
   Point least = points.front(), most = least;
@@ -33,14 +34,13 @@ bool cancels(const MirrorPlanes &planes, std::size_t component) {
 
 bool has_image(const MirrorPlanes &planes, int image, const OutputFields &begin,
                const OutputFields &end) {
-  constexpr double round_off = 1e-7;
-  const double length =
-      std::hypot(end[field::x] - begin[field::x], end[field::y] - begin[field::y]);
+  const double most =
+      round_off * std::hypot(end[field::x] - begin[field::x], end[field::y] - begin[field::y]);
   for (std::size_t k = 0; k < planes.size(); ++k) {
     const auto &[component, position] = planes[k];
     const std::size_t place = component == 0 ? field::x : field::y;
-    if (((image >> k) & 1) != 0 && std::abs(begin[place] - position) < round_off * length &&
-        std::abs(end[place] - position) < round_off * length)
+    if (((image >> k) & 1) != 0 && std::abs(begin[place] - position) < most &&
+        std::abs(end[place] - position) < most)
       return false;
   }
   return true;

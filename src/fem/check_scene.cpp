@@ -1,6 +1,5 @@
 #include "rbvi/fem/check_scene.hpp"
 #include "check_kernels.hpp"
-#include "check_mirrors.hpp"
 
 #include "rbvi/core/box.hpp"
 #include "rbvi/core/text.hpp"
@@ -294,13 +293,53 @@ void check_material(const Problem &problem, const std::vector<int> &of_cells) {
   }
 }
 
+/// Throws bad_input where the mesh does not end at a plane of symmetry, where the map or the motion
+/// moves it, or where nodes can leave it. Collective.
+void check_mirror(const Problem &problem, const MirrorPlane &plane) {
+  const Scene &scene = problem.scene();
+  const Dofs &dofs = problem.dofs();
+  const auto c = static_cast<std::size_t>(plane.component);
+  const FullMu mu = generic_point(scene.parameters);
+  const std::vector<Point> &points = problem.mesh().points;
+  std::vector<double> beyond{-1e300, -1e300}, found{0, 0}; // on both sides; moved, loose
+  for (const Point &x : points) {
+    beyond[0] = std::max(beyond[0], plane.position - x[c]);
+    beyond[1] = std::max(beyond[1], x[c] - plane.position);
+  }
+  over_ranks(problem.comm(), MPI_MAX, beyond);
+  const double round_off = 1e-7 * (beyond[0] + beyond[1]);
+  const std::string axis = plane.component == 0 ? "x" : "y",
+                    where = axis + " = " + short_number(plane.position);
+  if (std::min(std::abs(beyond[0]), std::abs(beyond[1])) > round_off)
+    throw bad_input("the mesh does not end at the plane of symmetry " + where +
+                    ", but reaches from " + short_number(plane.position - beyond[0]) + " to " +
+                    short_number(plane.position + beyond[1]) + ": mirror: {" + axis +
+                    ": ...} names another plane");
+  for (std::size_t node = 0; node < points.size(); ++node) {
+    if (std::abs(points[node][c] - plane.position) > round_off) continue;
+    found[0] = std::max(found[0], std::abs(scene.map(mu, points[node])[c] - plane.position));
+    if (scene.components == 1) continue;
+    if (scene.motion) found[0] = std::max(found[0], std::abs(scene.motion(mu, points[node])[c]));
+    const std::size_t dof = node * static_cast<std::size_t>(scene.components) + c;
+    if (dofs.free[dof] >= 0 || (!dofs.imposed_by.empty() && dofs.imposed_by[dof] >= 0))
+      found[1] = 1;
+  }
+  over_ranks(problem.comm(), MPI_MAX, found);
+  if (!(found[0] <= 10 * round_off))
+    throw bad_input("the map or the motion moves the plane of symmetry " + where);
+  if (found[1] > 0)
+    throw bad_input("nodes on the plane of symmetry " + where + " can leave it: impose u" + axis +
+                    ": 0 on the whole boundary that is there");
+}
+
 } // namespace
 
 void check_scene(const Problem &problem) {
   const Scene &scene = problem.scene();
   const FullMu mu = generic_point(scene.parameters);
   std::vector<double> outward, inward;
-  check_mirrors(problem);
+  for (const MirrorPlane &plane : scene.mirrors)
+    check_mirror(problem, plane);
   const std::vector<int> materials = materials_of_cells(scene, problem.mesh());
   collectively(problem.comm(), [&] {
     check_material(problem, materials);

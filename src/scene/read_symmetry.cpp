@@ -10,40 +10,30 @@ namespace {
 
 constexpr std::array<const char *, 2> axes{"x", "y"};
 
-/// mirror_images: N is short for planes through the origin.
-MirrorPlanes mirrors_in(const Reader &reader) {
-  const CaseNode &planes = section(reader, "mirror");
+/// mirror_images: 2 and 4 are short for planes through the origin.
+void read_mirrors(const Reader &reader, Scene &scene) {
+  const CaseNode *planes = reader.root.find("mirror");
   const double images = number_or(reader, reader.root, "mirror_images", 1);
   if (images != 1 && images != 2 && images != 4)
     throw bad_input("mirror_images is " + short_number(images) +
-                    ": 2 is a body that goes on beyond x = 0, 4 one that goes on beyond y = 0, "
-                    "too; mirror: {x: ..., y: ...} names other planes");
-  if (images > 1 && !planes.entries.empty())
+                    ": 2 is short for mirror: {x: 0}, 4 for mirror: {x: 0, y: 0}");
+  if (images > 1 && planes != nullptr)
     throw bad_input("mirror_images and mirror say the same: leave out mirror_images");
-  if (images == 2) return {{0, 0}};
-  if (images == 4) return {{0, 0}, {1, 0}};
-  MirrorPlanes mirrors;
-  for (int c = 0; c < 2; ++c)
-    if (const CaseNode *position = planes.find(axes[c]))
-      mirrors.push_back({c, number_in(reader, *position)});
-  return mirrors;
-}
-
-void read_mirrors(const Reader &reader, Scene &scene, Defects &defects) {
-  const CaseNode *planes = reader.root.find("mirror"), *images = reader.root.find("mirror_images");
-  if (planes == nullptr && images == nullptr) return;
-  defects.collect(images != nullptr ? *images : *planes, [&] {
-    scene.mirrors = mirrors_in(reader);
-    if (scene.axisymmetric && cancels(scene.mirrors, 0))
-      throw bad_input("an axisymmetric body is whole about its axis x = 0: leave out this plane "
-                      "of symmetry");
-  });
+  for (int c = 0; c < 2; ++c) {
+    const CaseNode *position = planes == nullptr ? nullptr : planes->find(axes[c]);
+    if (position != nullptr || images > 2 * c + 1)
+      scene.mirrors.push_back({c, position != nullptr ? number_in(reader, *position) : 0});
+  }
+  if (scene.axisymmetric && cancels(scene.mirrors, 0))
+    throw bad_input("an axisymmetric body is whole about x = 0: leave out this plane of symmetry");
 }
 
 } // namespace
 
 void read_symmetry(const Reader &reader, Scene &scene, Defects &defects) {
-  read_mirrors(reader, scene, defects);
+  const CaseNode *images = reader.root.find("mirror_images");
+  defects.collect(images != nullptr ? *images : section(reader, "mirror"),
+                  [&] { read_mirrors(reader, scene); });
   scene.small = yes_or(reader.root, "small", false);
   const CaseNode &node = section(reader, "symmetric");
   defects.collect(node, [&] {

@@ -36,8 +36,8 @@ OfflinePlan plan_offline(MPI_Comm world, const Groups &groups, const OfflineOpti
                          const std::vector<Mu> &training);
 
 /// Solves at the training set by groups of ranks, reduces, unless the model that is there lacks
-/// outputs alone (with_other_outputs), and writes the run directory of the options. Throws bad_input as check_memory() does, failure if more samples fail than the options
-/// allow. Collective on `world`.
+/// outputs alone, and writes the run directory of the options. Throws bad_input as check_memory()
+/// does, failure if more samples fail than the options allow. Collective on `world`.
 OfflineRun run_offline(MPI_Comm world, const Groups &groups, const OfflineOptions &options,
                        const std::vector<Mu> &training, OfflinePlan plan);
 
