@@ -393,15 +393,16 @@ TEST(NamedOutputs, AreRefusedWhereTheyAreNotKnown) {
   };
   expect_refused("  far: {value: ux, point: [3, 0.2]}\n", "which no cell of the mesh has");
   expect_refused("  side: {reaction: [0, 1], at: sides}\n", "which is not held in its direction");
+  const std::string spring =
+      "imposed: {top: {at: top, ux: 0}}\nsprings: {bolt: {at: top, stiffness: "
+      "3, pretension: 20*d, direction: [0.6, 0.8]}}\n";
   try {
     const Problem problem(PETSC_COMM_WORLD,
-                          pressed(hold + "springs: {bolt: {at: sides, stiffness: 3, direction: "
-                                         "[1, 0]}}\n",
-                                  "  side: {reaction: [1, 0], at: sides}\n", "plane_strain"),
+                          pressed(spring, "  aside: {reaction: [1, 0], at: top}\n", "plane_strain"),
                           {});
     FAIL() << "a spring on the boundary of a reaction";
   } catch (const Error &error) {
-    EXPECT_NE(std::string(error.what()).find("which shares nodes with 'sides'"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("which shares nodes with 'top'"), std::string::npos)
         << error.what();
   }
   Scene misspelt = pressed(hold, "", "plane_strain"); // as a program may make it
