@@ -33,7 +33,7 @@ Drawn refined_drawing(const std::string &physics, const std::string &text, Seria
 /// The right half of a round body of radius 1 (boundaries top, axis, round) on one that is flat
 /// (axis, flat, base); they touch at the origin.
 SerialMesh round_on_flat() {
-  const SerialMesh both = two_graded_quarter_discs(60);
+  const SerialMesh both = two_graded_quarter_discs(40);
   SerialMesh mesh;
   std::vector<int> number(both.points.size(), -1);
   for (const int cell : both.region.at("upper")) {
@@ -53,7 +53,7 @@ SerialMesh round_on_flat() {
     for (const auto &facet : both.boundary.at(name))
       if (number[facet[0]] >= 0)
         mesh.boundary[own].push_back({number[facet[0]], number[facet[1]], -1});
-  add_grid(mesh, 50, 16,
+  add_grid(mesh, 36, 12,
            [](const Point &x) {
              return Point{1.5 * std::pow(x[0], 1.7), -1.2 * std::pow(1 - x[1], 1.7), 0};
            },
@@ -95,20 +95,28 @@ TEST(RoundAndFlat, APeakBetweenASphereAndAPlateIsThatOfHertz) {
   EXPECT_NEAR(*outputs.peak_pressure / peak, 1, 0.02);
 }
 
-/// The master's edges have their own middles, and normals of these.
-TEST(RoundAndFlat, OfTwoDisksOneMayBeNamed) {
-  const HfSolution s =
-      solve(refined_drawing("plane_strain",
-                            "parameters: {push: {range: [0.5, 0.55], default: 0.51}}\n"
-                            "imposed:\n  axis: {at: axis, ux: 0}\n  top: {at: top, uy: -push}\n"
-                            "  bottom: {at: bottom, uy: push}\n"
-                            "contact: {between: {at: slave, against: master}}\n"
-                            "curves: {slave: {circle: [0, 1.5, 1]}}\n",
-                            two_graded_quarter_discs(60), 0),
-            {0.51});
-  EXPECT_NEAR(*s.outputs.peak_pressure /
-                  std::sqrt(2 * *s.outputs.normal_force * stiffness / (pi * 0.5)),
-              1, 0.02);
+/// Two disks that touch at the origin, each along so many edges; of the lower one they may stay
+/// straight.
+TEST(RoundAndFlat, OfTwoDisksOneMayBeNamedByHertz) {
+  for (const std::string lower : {"", ", master: {circle: [0, -1, 1]}"}) {
+    SerialMesh disks = two_graded_quarter_discs(60);
+    for (Point &x : disks.points)
+      x[1] += x[1] > 0 ? -0.5 : 0.5;
+    const HfSolution s =
+        solve(refined_drawing("plane_strain",
+                              "parameters: {push: {range: [0.001, 0.05], default: 0.01}}\n"
+                              "imposed:\n  axis: {at: axis, ux: 0}\n  top: {at: top, uy: -push}\n"
+                              "  bottom: {at: bottom, uy: push}\n"
+                              "contact: {between: {at: slave, against: master}}\n"
+                              "curves: {slave: {circle: [0, 1, 1]}" +
+                                  lower + "}\n",
+                              disks, 0),
+              {0.02});
+    EXPECT_NEAR(*s.outputs.peak_pressure /
+                    std::sqrt(2 * *s.outputs.normal_force * stiffness / (pi * 0.5)),
+                1, 0.02)
+        << lower;
+  }
 }
 
 /// Two quarter rings whose circles are closer than their edges are to them.
@@ -186,8 +194,8 @@ TEST(RoundAndFlat, AFilletOfALongerBoundaryIsNamedByItself) {
         };
         const Point middle = (low(edge / 8.0) + low((edge + 1) / 8.0)) / 2;
         const bool on_arc = edge >= 4 && more != ", gap_from: edges";
-        EXPECT_NEAR(interface.constraint_at(mu, middle).gap,
-                    on_arc ? height_of_fillet(middle) : middle[1], 1e-13)
+        EXPECT_NEAR(interface.constraint_at(mu, middle).gap + 0.05, // moved as a whole
+                    on_arc ? height_of_fillet(middle) : middle[1], 1e-12)
             << against << more << " " << edge;
       }
     }

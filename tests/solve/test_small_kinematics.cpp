@@ -97,7 +97,7 @@ TEST(SmallKinematics, GapsOfTwoDisksAreOffByWhatTheDisplacedDisksSay) {
   EXPECT_NEAR(interface.gap_error(expand(still.parameters, {0.5}),
                                   moved_alike(interface, moved, {}),
                                   Vector::Ones(interface.dual().size())),
-              expected(vertices, {0, -1.5, 0}, 1, moved), 1e-5);
+              expected(vertices, {0, -1.5, 0}, 1, moved), 2e-4); // normals of parabolas: h^2
 }
 
 /// A small push on the top of a bump passes; a shift along it does not, unless it is meant.
