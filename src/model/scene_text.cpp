@@ -289,11 +289,12 @@ bool same(const std::string &name, const std::string &one, const std::string &ot
 std::string scene_text(const Scene &scene, const Contact &contact) {
   Text text(scene, contact);
   add_parameters(scene, text);
-  Record record = record_of(scene);
+  Scene without_outputs = scene; // which change no answer
+  without_outputs.outputs.clear();
+  Record record = record_of(without_outputs);
   record.name = "scene";         // whatever its folder is called
   record.parts.erase("check");   // refuses parameters, and changes no answer
   record.numbers.erase("small"); // nor does what warnings there are
-  std::erase_if(record.parts, [](const auto &part) { return part.first.starts_with("output_"); });
   for (auto &[name, part] : record.parts)
     if (name.starts_with("contact_")) part.texts.erase("name"); // nor does what it is called
   text.add("scene", record);
