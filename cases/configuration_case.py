@@ -148,10 +148,19 @@ def size_of(unit, units):
     return size
 
 
+def number_of(text):
+    """Value and unit of "50 um", of an expression without one; None for what is not simple."""
+    value, _, unit = str(text).partition(" ")
+    try:
+        return float(value), unit.strip()
+    except ValueError:
+        return evaluated(text, FUNCTIONS), ""
+
+
 def numbers_of(parameter):
     """Value and unit, "" without one, of the default and the bounds of a range, where they are there."""
     given = ([parameter["default"]] if "default" in parameter else []) + list(parameter.get("range", []))
-    return [(float(value), unit.strip()) for value, _, unit in (str(one).partition(" ") for one in given)]
+    return [number_of(one) for one in given]
 
 
 def unit_of(parameter):
@@ -170,7 +179,8 @@ def values_of(case, answer):
 
     for name, parameter in parameters.items():
         value, unit = numbers_of(parameter)[0]
-        values[name] = seen(value, unit or unit_of(parameter))
+        if value is not None:
+            values[name] = seen(value, unit or unit_of(parameter))
     values |= {name[3:]: seen(numbers[0], unit_of(parameters.get(name[3:], {})))
                for name, numbers in answer.of_all.items() if name.startswith("mu_")}
     for name, expression in case.get("let", {}).items():
