@@ -213,11 +213,13 @@ TEST_F(Cases, PlanesAsLevelSetsGiveTheAnswersOfPlanes) {
     GTEST_SKIP() << "there is no program gmsh";
   const std::string seal =
       "solve -case " RBVI_CASES "/seal -mu 0.6,0.2,0.3,0.45 -set 'mesh.set.edges=40";
-  const std::string planes = output_of(rbvi(1, seal + "'")),
-                    levels = output_of(rbvi(1, seal + ",contact.bottom.against={level_set: y}"
-                                                      ",contact.wall.against={level_set: x}"
-                                                      ",contact.lid.against={level_set: 5.33 - "
-                                                      "squeeze - y}'"));
+  std::string levels = seal;
+  for (const auto &[contact, level] :
+       {std::pair{"bottom", "y"}, {"wall", "x"}, {"lid", "5.33 - squeeze - y"}})
+    levels += std::string(",contact.") + contact + ".against.plane=,contact." + contact +
+              ".against.level_set=" + level;
+  const std::string planes = output_of(rbvi(1, seal + "'"));
+  levels = output_of(rbvi(1, levels + "'"));
   for (const std::string name : {"energy", "normal_force", "tangential_force", "contact_nodes",
                                  "stick_nodes", "peak_pressure"})
     EXPECT_NEAR(value_of(levels, name), value_of(planes, name),
