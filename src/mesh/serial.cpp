@@ -217,11 +217,14 @@ void balance_inclusion(SerialMesh &mesh, const Scene &scene) {
 std::string fingerprint_of(const SerialMesh &mesh) {
   std::string bytes;
   append(bytes, mesh.dim);
-  const double scale = 0x1p24 / extent_of(mesh);
+  // A power of two, which round-off of the extent leaves as it is (but beside 1.23 2^k): far from
+  // the origin all coordinates would tell of it.
+  const long long size = std::llround(std::log2(extent_of(mesh)) + 0.2);
+  const double scale = std::exp2(24 - static_cast<double>(size));
   for (const Point &x : mesh.points)
     for (const double coordinate : x)
       append(bytes, std::llround(coordinate * scale));
-  append(bytes, std::llround(std::log2(extent_of(mesh)) * 0x1p24));
+  append(bytes, size);
   for (const auto &cell : mesh.cells)
     append(bytes, cell);
   for (const auto &[name, cells] : mesh.region) {

@@ -109,10 +109,9 @@ TEST(Condensed, SeveralTermsOfBMakeAllTheirProducts) {
 /// One modulus, that beside Poisson's ratio, and a decade of it on a part of the body.
 TEST(Condensed, WhatOnlyScalesIsNotSampled) {
   const auto expect = [](const std::string &free, const Sections &other, const Mu &mu, int count) {
-    Sections sections{{"parameters",
-                       "{depth: {default: 0.05}, k: {range: [1, 10], default: 2}, nu: "
-                       "{range: [0.1, 0.4], default: 0.3}, young: {default: 15}}"}};
-    sections.insert(other.begin(), other.end());
+    Sections sections = other;
+    sections.insert({"parameters", "{depth: {default: 0.05}, k: {range: [1, 10], default: 2}, nu: "
+                                   "{range: [0.1, 0.4], default: 0.3}, young: {default: 15}}"});
     Scene scene = make_scene(read_case(block_case(sections), "block.yaml"), {});
     scene.parameters = free_only(scene.parameters, free);
     Problem problem(PETSC_COMM_WORLD, scene, {});
@@ -123,12 +122,16 @@ TEST(Condensed, WhatOnlyScalesIsNotSampled) {
     EXPECT_EQ(made.factorisations, count) << free;
     EXPECT_LE(made.condensed.error, 1e-9);
     const Matrix expected = truth(problem, basis, mu),
-                 found = interpolated(scene, made.condensed, Vector::Ones(1), basis.cols(), mu);
+                 found = interpolated(scene, made.condensed, theta_of(problem, affine.b, {mu}, mu),
+                                      basis.cols(), mu);
     EXPECT_LE((found - expected).norm(), 1e-8 * expected.norm()) << free;
   };
   expect("k", {}, {3.7}, 1);
   expect("k,nu", {}, {3.7, 0.22}, 17);
-  expect("k", {{"materials", "{a: {at: all, E: 15 * (y > 0.25 ? k : 1), nu: 0.3}}"}}, {3.7}, 17);
+  expect("k",
+         {{"materials", "{a: {at: all, E: '15 * (y > 0.25 ? k : 1)', nu: 0.3}}"},
+          {"parameters", "{depth: {default: 0.05}, k: {range: [1, 10], default: 2}}"}},
+         {3.7}, 17);
 }
 
 TEST(Condensed, TooFewPointsMakeAModelThatSaysItsError) {
@@ -142,7 +145,8 @@ TEST(Condensed, TooFewPointsMakeAModelThatSaysItsError) {
   EXPECT_EQ(said.find("-condensed_tolerance") != std::string::npos, rank_of(PETSC_COMM_WORLD) == 0);
   const Matrix expected = truth(problem, basis, {0.3}),
                found =
-                   interpolated(problem.scene(), condensed, Vector::Ones(1), basis.cols(), {0.3});
+                   interpolated(problem.scene(), condensed,
+                                theta_of(problem, affine.b, {{1.0}}, {0.3}), basis.cols(), {0.3});
   EXPECT_GT(condensed.error, 1e-9);
   EXPECT_LE((found - expected).norm(), 10 * condensed.error * expected.norm());
 }

@@ -81,7 +81,6 @@ TEST(CaseFile, MistakesHaveTheirLine) {
       {"a: x\n  y\n", "2: it belongs to no name"},
       {"a: x >\n  y\n", "2: it belongs to no name"},
       {"a: |\n  x\n  y\n", "1: a value goes over several lines"},
-      {"a: >\n  x\n b: 1\nc\n", "4: "},
       {"a: 1\n---\nb: 2\n", "3: a second document begins"},
       {"  a: 1\n b: 2\n", "2: "},
       {"a: 1\nb: \xff\xfe\n", "2: a byte is no UTF-8 text"},
