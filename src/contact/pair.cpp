@@ -329,8 +329,10 @@ Grid PairInterface::fields(const FullMu &mu, const Vector &u, const Vector &lamb
       slip[k] = slip_along(normals[k], apart(by_all, *p));
       if (!constant) put_stress(k, of.places[k]);
     }
-  for (Index k = 0; k < edges && constant; ++k)
-    if (of.faced[k]) put_stress(k, of.places[of.cells[2 * k]]);
+  for (Index k = 0; k < edges && constant; ++k) {
+    const auto [edge, s] = of.places[of.cells[2 * k]]; // of a vertex the end of the edge before
+    if (of.faced[k]) put_stress(k, {s < 1 ? edge : edge + 1, 0});
+  }
   add_gap(gap, normals, grid);
   grid.of_nodes.push_back({"slip", slip, "m"});
   add_stress("pressure", pressure, constant, grid);

@@ -119,7 +119,8 @@ TEST_F(PairVtu, ShowsBothBodiesWithTheirMotion) {
   EXPECT_EQ(data_array(file.bodies, "connectivity").size(), model.fields.cells.size());
 }
 
-/// What lies on the contact curve at mu = 0.8, where the slave arc reaches beyond the master arc.
+/// What lies on the contact curve at mu = 0.8, where the slave arc reaches beyond the master arc:
+/// vertices that have a partner, and the point of the last edge up to which it has one.
 void expect_curve(const Written &file, const ReducedModel &model, const Scene &scene) {
   const std::size_t count = file.paired.size();
   ASSERT_GT(count, 4U);
@@ -127,10 +128,10 @@ void expect_curve(const Written &file, const ReducedModel &model, const Scene &s
   const std::vector<double> points = data_array(file.contact, "points"),
                             u = data_array(file.contact, "u"),
                             gap = data_array(file.contact, "gap");
-  ASSERT_EQ(points.size(), 3 * count);
-  ASSERT_EQ(u.size(), 3 * count);
-  EXPECT_EQ(data_array(file.contact, "connectivity").size(), 2 * (count - 1));
-  EXPECT_EQ(data_array(file.contact, "types"), std::vector<double>(count - 1, 3));
+  ASSERT_EQ(points.size(), 3 * (count + 1));
+  ASSERT_EQ(u.size(), points.size());
+  EXPECT_EQ(data_array(file.contact, "connectivity").size(), 2 * count);
+  EXPECT_EQ(data_array(file.contact, "types"), std::vector<double>(count, 3));
   const auto &[curves, nodes] = model.contact.interfaces.front();
   for (std::size_t k = 0; k < count; ++k) {
     const auto node = static_cast<std::size_t>(file.paired[k]);
@@ -163,13 +164,13 @@ TEST_F(PairVtu, ConstantPressureIsDrawnPerEdge) {
   const Written file = write(model, p0(), {0.8});
   expect_curve(file, model, p0());
   const std::vector<double> pressure = data_array(section(file.contact, "CellData"), "pressure");
-  ASSERT_EQ(pressure.size(), file.paired.size() - 1);
+  ASSERT_EQ(pressure.size(), file.paired.size());
   for (std::size_t k = 0; k < pressure.size(); ++k)
     EXPECT_EQ(pressure[k], file.lambda[std::min<Index>(file.paired[k] / 2, 4)]);
 
   const std::vector<double> nodal = data_array(section(file.contact, "PointData"), "pressure"),
                             points = data_array(file.contact, "points");
-  ASSERT_EQ(nodal.size(), file.paired.size());
+  ASSERT_EQ(nodal.size(), file.paired.size() + 1);
   EXPECT_DOUBLE_EQ(nodal.front(), pressure.front());
   EXPECT_DOUBLE_EQ(nodal.back(), pressure.back());
   const auto length = [&](std::size_t k) {
@@ -187,8 +188,8 @@ TEST_F(PairVtu, LinearPressureIsDrawnPerNode) {
   const Written file = write(model, p1(), {0.8});
   expect_curve(file, model, p1());
   const std::vector<double> pressure = data_array(section(file.contact, "PointData"), "pressure");
-  ASSERT_EQ(pressure.size(), file.paired.size());
-  for (std::size_t k = 0; k < pressure.size(); ++k)
+  ASSERT_EQ(pressure.size(), file.paired.size() + 1);
+  for (std::size_t k = 0; k < file.paired.size(); ++k)
     EXPECT_EQ(pressure[k], file.lambda[file.paired[k]]);
   EXPECT_EQ(section(file.contact, "CellData").find("pressure"), std::string::npos);
 }
