@@ -250,6 +250,7 @@ TEST(Imposed, ContactBesideTheFrameSeesItsHeight) {
       Scene scene = make_scene("membrane_obstacle", {{"degree", std::to_string(degree)}});
       scene.parameters = all_free(scene.parameters.all);
       scene.mesh.regions = {"rest"};
+      scene.curves.clear();
       scene.mesh.facts.clear();
       const auto over = [&](double sunk) {
         return obstacle(
