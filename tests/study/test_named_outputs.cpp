@@ -114,41 +114,6 @@ TEST(NamedOutputs, OfAModelComeBackFromItsFile) {
     expect_exact(mu, online.outputs(mu, online.solve(mu)));
 }
 
-/// Two squares at one place, each with nodes of its own.
-const std::string stacked =
-    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n6\n1 1 \"bottom\"\n1 2 \"joint\"\n"
-    "1 3 \"upper joint\"\n1 4 \"top\"\n2 5 \"low\"\n2 6 \"up\"\n$EndPhysicalNames\n$Nodes\n8\n"
-    "1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 1 0\n6 1 1 0\n7 1 2 0\n8 0 2 0\n$EndNodes\n"
-    "$Elements\n8\n1 1 2 1 1 1 2\n2 1 2 2 2 3 4\n3 1 2 3 3 5 6\n4 1 2 4 4 7 8\n"
-    "5 2 2 5 5 1 2 3\n6 2 2 5 5 1 3 4\n7 2 2 6 6 5 6 7\n8 2 2 6 6 5 7 8\n$EndElements\n";
-
-Outputs of_stacked(const std::string &output, const Mu &mu) {
-  const TemporaryFile file(stacked);
-  const std::string text =
-      "rbvi: 1\nphysics: plane_strain\nmesh: {file: " + file.name() +
-      ", degree: 1}\nparameters: {d: {range: [-0.1, 0.1], default: 0.05}}\n"
-      "materials: {rubber: {at: [low, up], E: 15, nu: 0.3}}\n"
-      "imposed: {top: {at: top, ux: 0, uy: d}, bottom: {at: bottom, ux: 0, uy: 0}}\n"
-      "contact: {joint: {at: upper joint, against: joint}}\noutputs: {o: " +
-      output + "}\n";
-  Problem problem(PETSC_COMM_WORLD, make_scene(read_case(text, "stacked.yaml"), {}), {});
-  return HighFidelity(problem, {}).solve(mu).outputs;
-}
-
-TEST(NamedOutputs, AtAPointOfTwoBodiesNameOneOfThem) {
-  const auto at = [](const std::string &rest) {
-    return of_stacked("{value: uy, point: [0.4, 1]" + rest + "}", {0.05}).named.front().value;
-  };
-  EXPECT_NEAR(at(", in: low"), 0, 1e-12);
-  EXPECT_NEAR(at(", in: up"), 0.05, 1e-12);
-  EXPECT_TRUE(refuses("which two bodies have", [&] { at(""); }));
-  EXPECT_TRUE(refuses("which two bodies have", [&] { at(", in: [low, up]"); }));
-  EXPECT_TRUE(refuses("no cell of the mesh in 'up' has",
-                      [] { (void)of_stacked("{value: uy, point: [0.4, 0.5], in: up}", {0.05}); }));
-  EXPECT_NEAR(of_stacked("{value: uy, point: [1, 2]}", {0.05}).named.front().value, 0.05, 1e-12)
-      << "a corner of one body";
-}
-
 /// A measure that did not end inside an edge would jump.
 TEST(NamedOutputs, AMeasureIsContinuous) {
   Problem problem(PETSC_COMM_WORLD, block("  left: {measure: pressure * x < level}\n"), {});
