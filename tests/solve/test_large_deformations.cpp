@@ -57,10 +57,12 @@ void expect_known(const std::string &friction, std::span<const Known> known) {
     EXPECT_NEAR(*s.outputs.peak_pressure, k.peak, 3e-3 * k.peak);
     EXPECT_NEAR(*s.outputs.horizontal_reaction, 0, 1e-12);
     if (k.tangential > 0) {
-      // The stress of the node between stick and slip is undecided: where fewer than 10 edges slip
-      // (4, 2 and 5 at the first three d) up to a node's share is open, else 1e-3.
+      // The stress of the node between stick and slip is undecided, and its magnitude has a corner
+      // where it turns inside of an edge: where fewer than 10 edges slip (4, 2 and 5 at the first
+      // three d) up to one and a half nodes' share is open, else 1e-3. At d = 0.05 3.3e-2 is left
+      // on this mesh, refined once and twice 6.0e-3 and 6.5e-4.
       const double slip = (*s.outputs.contact_nodes - *s.outputs.stick_nodes) / 2;
-      const double tangential = slip < 10 ? 1 / *s.outputs.contact_nodes : 1e-3;
+      const double tangential = slip < 10 ? 1.5 / *s.outputs.contact_nodes : 1e-3;
       EXPECT_NEAR(*s.outputs.tangential_force, k.tangential, tangential * k.tangential);
     }
     EXPECT_LE(s.kkt.largest(), 1e-12);
