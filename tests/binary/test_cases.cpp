@@ -36,7 +36,8 @@ const std::string geometry =
 TEST_F(Cases, ANewOneIsRightAndIsNotWrittenTwice) {
   EXPECT_TRUE(contains(output_of(rbvi(1, "new block")), "wrote block/case.yaml"));
   const std::string says = output_of(rbvi(2, "check block -vtu u.vtu"));
-  EXPECT_TRUE(contains(says, "no defect was found")) << says;
+  // It warns of its few nodes.
+  EXPECT_TRUE(contains(says, "no error was found; what was warned of stands")) << says;
   EXPECT_TRUE(contains(says, "depth                [0.01, 0.1] m\n")) << says;
   EXPECT_TRUE(contains(says, "\n  free                 sides: no condition, no load")) << says;
   EXPECT_TRUE(contains(says, "\n  a          exact, constant (2 terms)\n")) << says;

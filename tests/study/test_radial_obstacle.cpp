@@ -88,7 +88,8 @@ std::string disc_mesh(int rings) {
 
 Scene radial_scene(bool lumped) {
   Scene scene = make_scene("membrane_obstacle", {{"lumped", lumped ? "yes" : "no"}});
-  scene.mesh.facts.clear(); // a disc in place of the square
+  scene.mesh.facts.clear(); // a disc in place of the square, with an obstacle of another radius
+  scene.curves.clear();
   scene.map = [](const FullMu &, const Point &x) { return x; };
   const auto height = [](const FullMu &, const Point &x) {
     return -curvature * (x[0] * x[0] + x[1] * x[1]);
