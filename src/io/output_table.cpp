@@ -9,7 +9,7 @@ namespace rbvi {
 namespace {
 
 /// As a field of CSV.
-std::string field(const std::string &text) {
+std::string csv_field(const std::string &text) {
   return text.find_first_of(",\"\r\n") == std::string::npos ? text : csv_quoted(text);
 }
 
@@ -29,16 +29,16 @@ OutputTable::OutputTable(std::ostream &out, const ParameterSpace &space, const O
   for (int i = 0; i < parameters_; ++i)
     out_ << (i > 0 ? "," : "") << space.at(i).name;
   for (const OutputColumn &column : columns_) {
-    out_ << ',' << field(column.name);
-    if (style_.errors.contains(column.name)) out_ << ',' << field(column.name + "_error");
+    out_ << ',' << csv_field(column.name);
+    if (style_.errors.contains(column.name)) out_ << ',' << csv_field(column.name + "_error");
   }
   out_ << (style_.status ? ",status\n" : "\n");
 }
 
 void OutputTable::begin(const RowText &row) {
-  if (style_.id) out_ << field(row.id) << ',';
+  if (style_.id) out_ << csv_field(row.id) << ',';
   for (std::size_t i = 0; i < static_cast<std::size_t>(parameters_); ++i)
-    out_ << (i > 0 ? "," : "") << (i < row.parameters.size() ? field(row.parameters[i]) : "");
+    out_ << (i > 0 ? "," : "") << (i < row.parameters.size() ? csv_field(row.parameters[i]) : "");
 }
 
 void OutputTable::add(const Mu &mu, const Outputs &outputs, bool errors_hold,
