@@ -3,10 +3,12 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/mesh/serial.hpp"
+#include "rbvi/mesh/surface.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <ostream>
 #include <set>
 
 namespace rbvi {
@@ -47,6 +49,26 @@ std::vector<double> angles(const SerialMesh &mesh) {
   return result;
 }
 
+/// The largest distance of an edge of a piece that is on no curve of the case from the arc through
+/// its vertices, where it turns alike at both of them: what turns once is a corner.
+double off_its_arc(const SerialMesh &mesh, const CurvePiece &piece,
+                   const std::set<std::pair<PetscInt, PetscInt>> &curved) {
+  constexpr double straight = 1e-3; // radians
+  double away = 0, last_turn = 0;
+  for (std::size_t v = 2; v < piece.vertices.size(); ++v) {
+    const auto at = [&](std::size_t k) { return mesh.points[piece.vertices[k]]; };
+    const Point before = at(v - 1) - at(v - 2), after = at(v) - at(v - 1);
+    const double turn = std::atan2(cross(before, after)[2], dot(before, after));
+    const double both = std::min(std::abs(turn), std::abs(last_turn));
+    if (both > straight && std::max(std::abs(turn), std::abs(last_turn)) < sharp_turn &&
+        turn * last_turn > 0 &&
+        !curved.contains(std::minmax(piece.vertices[v - 2], piece.vertices[v - 1])))
+      away = std::max(away, norm(before) * both / 8);
+    last_turn = turn;
+  }
+  return away;
+}
+
 } // namespace
 
 std::vector<std::string> contact_curves(const Scene &scene) {
@@ -85,6 +107,31 @@ std::vector<CurvePiece> curve_pieces(const SerialMesh &mesh, const std::string &
   std::ranges::sort(pieces, {},
                     [](const CurvePiece &piece) { return std::ranges::min(piece.vertices); });
   return pieces;
+}
+
+std::vector<std::pair<std::string, double>> off_arcs(const SerialMesh &mesh, const Scene &scene) {
+  std::set<std::pair<PetscInt, PetscInt>> curved;
+  for (const auto &[name, curve] : scene.curves)
+    if (const auto own = mesh.boundary.find(name); own != mesh.boundary.end())
+      for (const auto &facet : own->second)
+        curved.insert(std::minmax<PetscInt>(facet[0], facet[1]));
+  std::vector<std::pair<std::string, double>> off;
+  for (const std::string &boundary : contact_curves(scene)) {
+    double away = 0;
+    for (const CurvePiece &piece : curve_pieces(mesh, boundary, scene.name))
+      away = std::max(away, off_its_arc(mesh, piece, curved));
+    if (away > 0) off.emplace_back(boundary, away);
+  }
+  return off;
+}
+
+void warn_of_edges(const Scene &scene, const std::string &file, std::ostream &out) {
+  if (file.empty()) return;
+  for (const auto &[boundary, away] : off_arcs(mesh_with_groups(scene, file), scene))
+    out << "warning: the contact boundary '" << boundary
+        << "' turns smoothly: its straight edges are up to " << formatted("%.1e", away)
+        << " off an arc, and so are gaps, on a refined mesh too, where pressures peak at its "
+           "corners; if it is one, name it under curves\n";
 }
 
 } // namespace rbvi

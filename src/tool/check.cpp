@@ -16,11 +16,9 @@
 #include "table.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <map>
-#include <set>
 
 namespace rbvi {
 
@@ -79,44 +77,6 @@ void print_sum(const char *name, const Sum &sum, const ParameterSpace &space) {
                 count == 1 ? "" : (" (" + std::to_string(count) + " terms)").c_str());
 }
 
-/// The largest distance of an edge of a piece that is on no curve of the case from the arc through
-/// its vertices, where it turns alike at both of them: what turns once is a corner.
-double off_its_arc(const SerialMesh &mesh, const CurvePiece &piece,
-                   const std::set<std::pair<PetscInt, PetscInt>> &curved) {
-  constexpr double straight = 1e-3; // radians
-  double away = 0, last_turn = 0;
-  for (std::size_t v = 2; v < piece.vertices.size(); ++v) {
-    const auto at = [&](std::size_t k) { return mesh.points[piece.vertices[k]]; };
-    const Point before = at(v - 1) - at(v - 2), after = at(v) - at(v - 1);
-    const double turn = std::atan2(cross(before, after)[2], dot(before, after));
-    const double both = std::min(std::abs(turn), std::abs(last_turn));
-    if (both > straight && std::max(std::abs(turn), std::abs(last_turn)) < sharp_turn &&
-        turn * last_turn > 0 &&
-        !curved.contains(std::minmax(piece.vertices[v - 2], piece.vertices[v - 1])))
-      away = std::max(away, norm(before) * both / 8);
-    last_turn = turn;
-  }
-  return away;
-}
-
-/// Boundaries of a file with contact along straight edges of what seems to be round.
-void print_rounded(const SerialMesh &mesh, const Scene &scene) {
-  std::set<std::pair<PetscInt, PetscInt>> curved;
-  for (const auto &[name, curve] : scene.curves)
-    if (const auto own = mesh.boundary.find(name); own != mesh.boundary.end())
-      for (const auto &facet : own->second)
-        curved.insert(std::minmax<PetscInt>(facet[0], facet[1]));
-  for (const std::string &boundary : contact_curves(scene)) {
-    double away = 0;
-    for (const CurvePiece &piece : curve_pieces(mesh, boundary, scene.name))
-      away = std::max(away, off_its_arc(mesh, piece, curved));
-    if (away > 0)
-      std::printf("  %-20s turns smoothly: its straight edges are up to %s off an arc, and so are "
-                  "gaps; if it is one, name it under curves\n",
-                  boundary.c_str(), formatted("%.1e", away).c_str());
-  }
-}
-
 /// What the mesh of a file is, and where nothing is said of its surface.
 void print_mesh(const SerialMesh &mesh, const Scene &scene, bool of_file) {
   for (const MeshFact &fact : scene.mesh.facts)
@@ -127,7 +87,11 @@ void print_mesh(const SerialMesh &mesh, const Scene &scene, bool of_file) {
   if (!free.empty())
     std::printf("  %-20s %s: no condition, no load and no contact there\n", "free",
                 joined(free).c_str());
-  if (of_file) print_rounded(mesh, scene);
+  if (!of_file) return;
+  for (const auto &[boundary, away] : off_arcs(mesh, scene))
+    std::printf("  %-20s turns smoothly: its straight edges are up to %s off an arc, and so are "
+                "gaps; if it is one, name it under curves\n",
+                boundary.c_str(), formatted("%.1e", away).c_str());
 }
 
 /// Without the round-off of numbers that were computed.

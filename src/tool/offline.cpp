@@ -4,6 +4,7 @@
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/mesh/contact_curves.hpp"
 #include "rbvi/model/print.hpp"
 #include "rbvi/model/scene_record.hpp"
 #include "rbvi/model/scene_text.hpp"
@@ -298,6 +299,7 @@ void command_offline(const OfflineOptions &options) {
     print_several_answers(std::cout, run.model);
     tell_of_samples(options.scene, contact_of(run.model, options.scene), run.sweep.samples,
                     std::cout);
+    warn_of_edges(options.scene, options.mesh.file, std::cout);
     print_written(std::cout,
                   {options.out / "model.h5", fields_file(options.out / "model.h5"),
                    options.out / "samples.csv", case_of_run(options.out), options.out / "samples"});

@@ -3,6 +3,7 @@
 #include "rbvi/core/locking.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/fem/check_scene.hpp"
+#include "rbvi/mesh/contact_curves.hpp"
 #include "rbvi/model/print.hpp"
 #include "rbvi/model/solution_vtu.hpp"
 #include "rbvi/mor/fields.hpp"
@@ -66,6 +67,7 @@ void command_solve(const OfflineOptions &options, const SolveOptions &solve) {
     std::printf("%s\n", describe(space, mu).c_str());
     print_outputs(std::cout, solution.outputs);
     warn_of_answer(problem, mu, solution, std::cout);
+    warn_of_edges(options.scene, options.mesh.file, std::cout);
     std::printf("stopped: %s\n", solution.reason.c_str());
     if (!solve.csv.empty()) {
       write_sample_table(solve.csv, space, {{mu, {}, {}, solution.outputs}});

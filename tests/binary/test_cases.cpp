@@ -154,6 +154,8 @@ TEST_F(Cases, RoundContactAlongStraightEdgesIsTold) {
                        "\n  rim                  turns smoothly: its straight edges are up to "
                        "3.4e-02 off an arc, and so are gaps"))
       << says;
+  EXPECT_TRUE(contains(output_of(rbvi(1, "solve -case body.yaml -mu 0.01 -mesh_refine 1")),
+                       "\nwarning: the contact boundary 'rim' turns smoothly"));
   spill("body.yaml", body + "curves: {rim: {circle: [0, 1, 1]}}\n");
   EXPECT_FALSE(contains(output_of(rbvi(2, "check body.yaml")), "turns smoothly"));
   spill("body.yaml", body);

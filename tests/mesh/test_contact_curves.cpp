@@ -3,6 +3,7 @@
 #include "rbvi/element/facet_forms.hpp"
 #include "rbvi/mesh/contact_curves.hpp"
 #include "rbvi/mesh/serial.hpp"
+#include "rbvi/mesh/surface.hpp"
 #include "tests/catalogue.hpp"
 
 #include <cmath>
@@ -50,6 +51,22 @@ TEST(ContactCurves, FollowTheFacetsWithTheBodyOnTheLeft) {
     std::swap(facet[0], facet[1]);
   std::ranges::reverse(turned.boundary[name]);
   EXPECT_EQ(pieces_of(turned)[0].vertices, pieces[0].vertices);
+}
+
+/// The rim of a polygon that is named by no curve; refined, its edges stay as far off.
+TEST(ContactCurves, AreOffTheArcsThatNoCurveNames) {
+  Scene scene = make_scene("rigid_disk");
+  const SerialMesh mesh = mesh_with_groups(scene, "");
+  EXPECT_TRUE(off_arcs(mesh, scene).empty());
+  scene.curves.clear();
+  const std::vector<std::pair<std::string, double>> off = off_arcs(mesh, scene);
+  ASSERT_EQ(off.size(), 1U);
+  EXPECT_EQ(off[0].first, "contact");
+  double edge = 0; // of the unit circle
+  for (const auto &facet : mesh.boundary.at("contact"))
+    edge = std::max(edge, norm(mesh.points[facet[0]] - mesh.points[facet[1]]));
+  EXPECT_NEAR(off[0].second, 1 - std::sqrt(1 - edge * edge / 4), 1e-3 * off[0].second);
+  EXPECT_TRUE(off_arcs(one_block(), block()).empty());
 }
 
 TEST(ContactCurves, AreInSeveralPiecesUprightOrClosed) {

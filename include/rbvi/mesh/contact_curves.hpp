@@ -3,6 +3,8 @@
 
 #include "rbvi/mesh/mesh.hpp"
 
+#include <iosfwd>
+
 namespace rbvi {
 
 /// The pieces of a boundary with contact, those with the lower vertices first; a closed one begins
@@ -12,5 +14,12 @@ std::vector<CurvePiece> curve_pieces(const SerialMesh &mesh, const std::string &
 
 /// The boundaries of a scene with contact along them; none but in two dimensions.
 std::vector<std::string> contact_curves(const Scene &scene);
+
+/// The boundaries with contact that turn smoothly and that no curve of the scene names, and how far
+/// their edges are off the arcs through their vertices. Refined edges stay where they are.
+std::vector<std::pair<std::string, double>> off_arcs(const SerialMesh &mesh, const Scene &scene);
+
+/// Warns of them in the mesh of a file; "": built-in shapes know their curves.
+void warn_of_edges(const Scene &scene, const std::string &file, std::ostream &out);
 
 } // namespace rbvi
