@@ -1,5 +1,4 @@
 #include "expression_machine.hpp"
-#include "expression_program.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -148,12 +147,6 @@ void gradients_in_blocks(const ProgramCode &code, const Points &points, int firs
 }
 
 } // namespace
-
-double evaluated(Operation operation, const std::array<double, 3> &operands) {
-  std::array<double, 4> registers{operands[0], operands[1], operands[2]};
-  with_operation(operation, ValueStep{registers.data(), ProgramStep{operation, 3, 0, 1, 2}});
-  return registers[3];
-}
 
 void BoundProgram::values(const double *parameters, const double *coordinates, std::size_t count,
                           double *results) const {

@@ -148,34 +148,38 @@ Form work_of(const Scene &scene, Term a, Part one, Part other, double factor) {
   });
 }
 
-/// -f(l), a part of l and theta of a term of f in the kernel.
-Form work_of_load(const Scene &scene, Term f, Part part) {
-  const FormDofs dofs = dofs_of(scene, f.form);
-  return on_imposed(f.form, 1, [f, part, dofs](const FullMu &mu, const Cell &cell) {
+/// -f(v), theta of the term of f in the kernel; v at the dofs of a cell: at(mu, cell).
+template <class At> auto work_at(const Term &f, const FormDofs &dofs, At at) {
+  return [f, dofs, at](const FullMu &mu, const Cell &cell) {
     CellVector load(dofs.count());
     f.form.kernel(mu, cell_of(f, cell), load.data());
-    const double work = product_of(f.theta, mu) * load.dot(values_on(dofs, part, mu, cell));
-    return CellVector(CellVector::Constant(1, -work));
-  });
+    return CellVector(CellVector::Constant(1, -product_of(f.theta, mu) * load.dot(at(mu, cell))));
+  };
 }
 
-/// -f(v) of a displacement v(mu, x), theta of the term of f in the kernel.
-Form work_along(const Scene &scene, Term f, Named<PointMap> v) {
+/// -f(l), a part of l.
+Form work_of_load(const Scene &scene, const Term &f, Part part) {
   const FormDofs dofs = dofs_of(scene, f.form);
-  return {f.form.region,
-          [f, v, dofs](const FullMu &mu, const Cell &cell, double *value) {
-            CellVector load(dofs.count());
-            f.form.kernel(mu, cell_of(f, cell), load.data());
-            const std::vector<Point> nodes = node_points(dofs.dim, dofs.degree, cell);
-            *value = 0;
-            for (std::size_t i = 0; i < nodes.size(); ++i) {
-              const Point at = v(mu, nodes[i]);
-              for (std::size_t c = 0; c < static_cast<std::size_t>(dofs.components); ++c)
-                *value -= load[static_cast<Index>(i) * dofs.components + static_cast<Index>(c)] *
-                          product_of(f.theta, mu) * at[c];
-            }
-          },
-          f.form.boundary};
+  return on_imposed(f.form, 1, work_at(f, dofs, [part, dofs](const FullMu &mu, const Cell &cell) {
+                      return values_on(dofs, part, mu, cell);
+                    }));
+}
+
+/// -f(v) of a displacement v(mu, x).
+Form work_along(const Scene &scene, const Term &f, Named<PointMap> v) {
+  const FormDofs dofs = dofs_of(scene, f.form);
+  const auto work = work_at(f, dofs, [v, dofs](const FullMu &mu, const Cell &cell) {
+    const std::vector<Point> nodes = node_points(dofs.dim, dofs.degree, cell);
+    CellVector at(dofs.count());
+    for (Index i = 0; i < at.size(); ++i)
+      at[i] = v(mu, nodes[i / dofs.components])[i % dofs.components];
+    return at;
+  });
+  Form form = f.form;
+  form.kernel = [work](const FullMu &mu, const Cell &cell, double *value) {
+    *value = work(mu, cell)[0];
+  };
+  return form;
 }
 
 /// -f(e_c) of a term of f without its theta; of means the sum of the directions of the form.

@@ -1,4 +1,3 @@
-#include "check_kernels.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/fem/check_scene.hpp"
 

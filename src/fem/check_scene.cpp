@@ -1,5 +1,4 @@
 #include "rbvi/fem/check_scene.hpp"
-#include "check_kernels.hpp"
 
 #include "rbvi/core/box.hpp"
 #include "rbvi/core/text.hpp"

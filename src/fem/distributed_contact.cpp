@@ -2,7 +2,6 @@
 
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/columns.hpp"
-#include "rbvi/par/gather.hpp"
 
 #include <unordered_set>
 

@@ -4,7 +4,6 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/columns.hpp"
-#include "rbvi/par/gather.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "rbvi/fem/interface_mesh.hpp"
+#include "rbvi/fem/distributed_contact.hpp"
 
 #include "seen.hpp"
 

@@ -7,7 +7,6 @@
 #include "rbvi/fem/assembly.hpp"
 #include "rbvi/fem/imposed.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/par/gather.hpp"
 
 #include <cmath>
 #include <map>

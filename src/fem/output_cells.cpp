@@ -1,11 +1,11 @@
-#include "rbvi/fem/output_cells.hpp"
+#include "rbvi/fem/problem.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/cell_fields.hpp"
 #include "rbvi/fem/assembly.hpp"
 #include "rbvi/fem/materials.hpp"
-#include "rbvi/par/gather.hpp"
+#include "rbvi/par/collective.hpp"
 
 #include <algorithm>
 #include <cmath>

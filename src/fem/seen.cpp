@@ -1,9 +1,10 @@
 #include "seen.hpp"
 
 #include "rbvi/element/facets.hpp"
-#include "rbvi/par/gather.hpp"
+#include "rbvi/par/collective.hpp"
 
 #include <numeric>
+#include <set>
 
 namespace rbvi {
 
@@ -58,22 +59,6 @@ SeenCells gather_cells(const Mesh &mesh, const Dofs &dofs, const std::vector<See
   return all;
 }
 
-namespace {
-
-/// Which of the scene's curves each facet of this rank is on: a boundary may hold several, each a
-/// group of its own.
-std::map<std::pair<std::size_t, int>, const std::function<Point(const Point &)> *>
-curves_of_facets(const Mesh &mesh, const Scene &scene) {
-  std::map<std::pair<std::size_t, int>, const std::function<Point(const Point &)> *> result;
-  for (const auto &[name, curve] : scene.curves)
-    if (const auto own = mesh.facets.find(name); own != mesh.facets.end())
-      for (const auto &[cell, facet] : own->second)
-        result.emplace(std::pair{cell, facet}, &curve);
-  return result;
-}
-
-} // namespace
-
 SeenCurve gather_curve(const Mesh &mesh, const Dofs &dofs, const std::string &boundary) {
   std::vector<int> mine;
   std::vector<PetscInt> middles;
@@ -97,16 +82,21 @@ SeenCurve gather_curve(const Mesh &mesh, const Dofs &dofs, const std::string &bo
 void move_middles(const Mesh &mesh, const Scene &scene, const std::string &boundary,
                   SeenNodes &nodes) {
   if (mesh.degree == 1 || scene.curves.empty()) return;
-  const auto curves = curves_of_facets(mesh, scene);
+  std::set<std::pair<std::size_t, int>> left; // a boundary may hold several curves
+  for (const auto &[cell, facet] : mesh.facets.at(boundary))
+    left.emplace(cell, facet);
   std::vector<PetscInt> middles;
   std::vector<double> places;
-  for (const auto &[cell, facet] : mesh.facets.at(boundary)) {
-    const auto curve = curves.find({cell, facet});
-    if (curve == curves.end()) continue;
-    const int middle = nodes_of(mesh, cell)[facet_nodes(2, 2, facet)[2]];
-    const Point x = (*curve->second)(mesh.points[middle]);
-    middles.push_back(mesh.natural_node[middle]);
-    places.insert(places.end(), x.begin(), x.end());
+  for (const auto &[name, curve] : scene.curves) {
+    const auto own = mesh.facets.find(name);
+    if (own == mesh.facets.end()) continue;
+    for (const auto &[cell, facet] : own->second) {
+      if (left.erase({cell, facet}) == 0) continue;
+      const int middle = nodes_of(mesh, cell)[facet_nodes(2, 2, facet)[2]];
+      const Point x = curve(mesh.points[middle]);
+      middles.push_back(mesh.natural_node[middle]);
+      places.insert(places.end(), x.begin(), x.end());
+    }
   }
   middles = gather_all(mesh.comm, middles, MPIU_INT);
   places = gather_all(mesh.comm, places, MPI_DOUBLE);

@@ -1,7 +1,6 @@
 #include "rbvi/io/h5.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/io/start_hdf5.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "seal.hpp"
 

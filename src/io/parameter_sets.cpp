@@ -4,7 +4,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/core/text.hpp"
-#include "rbvi/io/csv.hpp"
+#include "rbvi/io/output_table.hpp"
 #include "rbvi/io/system_error.hpp"
 
 #include <algorithm>

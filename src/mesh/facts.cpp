@@ -1,7 +1,7 @@
 #include "facets.hpp"
-#include "points.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/mesh/serial.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,12 @@
 #include "rbvi/mesh/serial.hpp"
 
-#include "points.hpp"
-
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/element/cell_fields.hpp"
 #include "rbvi/io/checksum.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <bit>
 #include <cstdio>
 #include <functional>
 #include <iterator>
@@ -114,6 +113,23 @@ std::vector<std::array<int, 2>> rim_edges(const SerialMesh &mesh, const std::str
   std::set_intersection(inside.begin(), inside.end(), outside.begin(), outside.end(),
                         std::back_inserter(both));
   return both;
+}
+
+/// Different sets of vertices among the edges (size 2) or triangles (size 3) of the cells.
+template <std::size_t size> std::int64_t count_parts(const SerialMesh &mesh) {
+  std::vector<std::array<int, size>> parts;
+  const int corners = mesh.dim + 1;
+  for (const auto &cell : mesh.cells)
+    for (unsigned mask = 0; mask < 1U << corners; ++mask) {
+      if (std::popcount(mask) != size) continue;
+      std::array<int, size> part{};
+      for (std::size_t i = 0, at = 0; i < static_cast<std::size_t>(corners); ++i)
+        if ((mask >> i & 1U) != 0) part[at++] = cell[i];
+      std::sort(part.begin(), part.end());
+      parts.push_back(part);
+    }
+  std::sort(parts.begin(), parts.end());
+  return std::unique(parts.begin(), parts.end()) - parts.begin();
 }
 
 } // namespace
@@ -275,6 +291,36 @@ std::vector<SerialFacet> facets_with_cells(const SerialMesh &mesh, const std::st
   if (std::ranges::any_of(facets, [](const SerialFacet &facet) { return facet.cell < 0; }))
     throw failure("a boundary facet is not a facet of any cell of the mesh");
   return facets;
+}
+
+std::vector<int> bodies_of(const SerialMesh &mesh) {
+  if (mesh.cells.empty()) return {};
+  std::vector<int> vertices;
+  for (const auto &cell : mesh.cells)
+    vertices.insert(vertices.end(), cell.begin(), cell.begin() + mesh.dim + 1);
+  const Vector numbers =
+      body_numbers(vertices, mesh.dim + 1, std::ssize(mesh.points), vertices.front());
+  std::vector<int> result;
+  for (const double number : numbers) // from 1
+    result.push_back(static_cast<int>(number) - 1);
+  return result;
+}
+
+std::int64_t nodes_when_refined(const SerialMesh &mesh, int times, int degree) {
+  std::int64_t vertices = std::ssize(mesh.points), edges = count_parts<2>(mesh),
+               cells = std::ssize(mesh.cells), triangles = mesh.dim == 2 ? 0 : count_parts<3>(mesh);
+  for (int level = 0; level < times; ++level) {
+    vertices += edges;
+    if (mesh.dim == 2) {
+      edges = 2 * edges + 3 * cells;
+      cells *= 4;
+    } else {
+      edges = 2 * edges + 3 * triangles + cells;
+      triangles = 4 * triangles + 8 * cells;
+      cells *= 8;
+    }
+  }
+  return degree == 2 ? vertices + edges : vertices;
 }
 
 } // namespace rbvi

@@ -1,4 +1,4 @@
-#include "rbvi/model/collocated_law.hpp"
+#include "rbvi/model/law_problem.hpp"
 
 #include "law_methods.hpp"
 #include "rbvi/core/error.hpp"

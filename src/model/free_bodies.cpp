@@ -1,7 +1,7 @@
 #include "rbvi/model/free_bodies.hpp"
 
+#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/local_fit.hpp"
 #include "rbvi/method/balance.hpp"
 #include "rbvi/model/law_solver.hpp"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "rbvi/method/nonlinear.hpp"
-#include "rbvi/model/collocated_law.hpp"
+#include "rbvi/model/law_problem.hpp"
 #include "rbvi/model/law_solver.hpp"
 #include "rbvi/model/sample_starts.hpp"
 

@@ -1,9 +1,7 @@
 #include "rbvi/model/law_problem.hpp"
 
-#include "edge_of_nodes.hpp"
+#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/local_fit.hpp"
-#include "rbvi/model/collocated_law.hpp"
 #include "rbvi/model/free_bodies.hpp"
 
 #include <numeric>

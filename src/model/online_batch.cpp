@@ -7,7 +7,6 @@
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/io/system_error.hpp"
-#include "rbvi/io/temporary_files.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/model/print.hpp"
 #include "rbvi/model/training_samples.hpp"

@@ -4,7 +4,6 @@
 #include "rbvi/core/locking.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/output_table.hpp"
-#include "rbvi/io/overwrite.hpp"
 #include "rbvi/io/system_error.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/model/print.hpp"

@@ -1,8 +1,8 @@
 #include "rbvi/model/reduced_contact.hpp"
 
-#include "edge_of_nodes.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
+#include "rbvi/model/column_laws.hpp"
 #include "rbvi/model/packed.hpp"
 
 #include <cmath>

@@ -3,8 +3,8 @@
 #include "rbvi/contact/entity_sum.hpp"
 #include "rbvi/element/facets.hpp"
 #include "rbvi/mor/operator_entries.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/par/columns.hpp"
-#include "rbvi/par/gather.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -8,7 +8,6 @@
 #include "rbvi/model/reduced_body.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/small_svd.hpp"
-#include "rbvi/par/turns.hpp"
 #include "rbvi/solve/response_solver.hpp"
 
 #include <Eigen/Cholesky>

@@ -8,7 +8,6 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/progress.hpp"
 #include "rbvi/par/small_svd.hpp"
-#include "rbvi/par/turns.hpp"
 #include "rbvi/solve/complement.hpp"
 
 #include <Eigen/Cholesky>
@@ -306,11 +305,12 @@ Matrix values_on_grid(const Problem &problem, const FullMu &all, const Condensed
     }
     if (finer) continue;
     if (condensed.error > options.tolerance && rank_of(problem.comm()) == 0)
-      std::fprintf(stderr,
-                   "rbvi: warning: the condensed operator is interpolated to %.1e only by %d points "
-                   "along a parameter of the stiffness: narrow its bounds, or raise "
-                   "-condensed_tolerance\n",
-                   condensed.error, options.max_points);
+      std::fprintf(
+          stderr,
+          "rbvi: warning: the condensed operator is interpolated to %.1e only by %d points "
+          "along a parameter of the stiffness: narrow its bounds, or raise "
+          "-condensed_tolerance\n",
+          condensed.error, options.max_points);
     return coordinates;
   }
 }

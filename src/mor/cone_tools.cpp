@@ -41,6 +41,41 @@ double condition(const Matrix &triangular) {
   return ratio * ratio;
 }
 
+/// Parts of unit vectors that are orthogonal to the vectors taken: their norms are the sines of
+/// the angles with the span of those.
+class Angles {
+public:
+  /// Columns within round-off of zero have no direction: their parts are zero.
+  explicit Angles(const Matrix &targets) : parts_(targets), taken_(targets.rows(), 0) {
+    const Vector norms = targets.colwise().norm();
+    for (Index p = 0; p < targets.cols(); ++p)
+      parts_.col(p) *= norms[p] > round_off * norms.maxCoeff() ? 1 / norms[p] : 0.0;
+  }
+
+  /// The vector with the largest angle, lowest index of a tie, and its sine.
+  std::pair<Index, double> largest() const {
+    const Vector sines = parts_.colwise().norm();
+    const double best = sines.maxCoeff();
+    Index index = 0;
+    while (sines[index] < (1 - tie) * best)
+      ++index;
+    return {index, best};
+  }
+
+  void take(Index p) {
+    Vector axis = parts_.col(p).normalized();
+    axis -= taken_ * (taken_.transpose() * axis); // again: the part may be a small remainder
+    axis.normalize();
+    parts_ -= axis * (axis.transpose() * parts_).eval();
+    parts_.col(p).setZero();
+    taken_.conservativeResize(Eigen::NoChange, taken_.cols() + 1);
+    taken_.rightCols<1>() = axis;
+  }
+
+private:
+  Matrix parts_, taken_;
+};
+
 } // namespace
 
 ProductRoot::ProductRoot(const SparseMatrix &product) {
@@ -222,6 +257,53 @@ void add_neighbours(std::vector<bool> &inside, const SparseMatrix &product) {
   for (Index i = 0; i < product.outerSize(); ++i)
     for (SparseMatrix::InnerIterator entry(product, i); entry; ++entry)
       if (before[i]) inside[entry.col()] = true;
+}
+
+Cone nodal_cone(const Matrix &snapshots, const SparseMatrix &product, const ConeOptions &options) {
+  const Matrix factor = product_factor(product);
+  std::vector<bool> inside = ever_in_contact(snapshots);
+  for (int layer = 0; layer < options.ring; ++layer)
+    add_neighbours(inside, product);
+
+  std::vector<Index> nodes;
+  Matrix outside = snapshots;
+  for (Index i = 0; i < snapshots.rows(); ++i)
+    if (inside[i]) {
+      nodes.push_back(i);
+      outside.row(i).setZero();
+    }
+  const auto count = std::ssize(nodes);
+  Cone cone;
+  cone.basis.generators = Matrix::Zero(snapshots.rows(), count);
+  for (Index k = 0; k < count; ++k) {
+    const Index i = nodes[k];
+    cone.basis.generators(i, k) = 1 / factor.col(i).norm();
+  }
+  cone.history.size = {0, static_cast<int>(count)};
+  // The snapshots without what is outside lie in the cone: a bound, 0 or next to it.
+  const double left = (factor * outside).colwise().norm().maxCoeff();
+  cone.history.error = {1, left / (factor * snapshots).colwise().norm().maxCoeff()};
+  cone.history.gram_condition = {gram_condition(factor * cone.basis.generators)};
+  cone.history.reason = "round-off reached";
+  return cone;
+}
+
+Cone angle_greedy_cone(const Matrix &snapshots, const SparseMatrix &product,
+                       const ConeOptions &options) {
+  GreedyCone cone(snapshots, span_coordinates(snapshots, product), options);
+  Angles angles(cone.targets());
+  while (!cone.finished()) {
+    // All angles with nothing are right: the first is the snapshot of largest norm.
+    const auto [widest, sine] = angles.largest();
+    const Index selected = cone.size() == 0 ? cone.farthest() : widest;
+    if (sine <= round_off) {
+      cone.stagnate();
+      break;
+    }
+    cone.add(snapshots.col(selected), selected);
+    angles.take(selected);
+  }
+  return cone.take();
 }
 
 } // namespace rbvi

@@ -4,8 +4,8 @@
 #include "rbvi/fem/materials.hpp"
 #include "rbvi/io/checksum.hpp"
 #include "rbvi/model/fields_file.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/par/columns.hpp"
-#include "rbvi/par/gather.hpp"
 
 #include <algorithm>
 #include <map>

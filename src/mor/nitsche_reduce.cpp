@@ -1,6 +1,5 @@
 // The reduction of Nitsche's method: modes alone, then the curve.
 #include "rbvi/mor/reduce.hpp"
-#include "rbvi/mor/stages.hpp"
 
 #include <array>
 

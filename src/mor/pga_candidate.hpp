@@ -1,7 +1,7 @@
 // One training parameter of the projected greedy, and the space that all of them are compared with.
 #pragma once
 
-#include "rbvi/par/small_eigen.hpp"
+#include "rbvi/par/small_svd.hpp"
 
 namespace rbvi {
 

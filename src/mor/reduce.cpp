@@ -1,10 +1,10 @@
-#include "rbvi/mor/stages.hpp"
+#include "rbvi/mor/reduce.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/model/self_check.hpp"
 #include "rbvi/mor/high_fidelity_pair.hpp"
 #include "rbvi/mor/nodal_dual_basis.hpp"
-#include "rbvi/par/turns.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/solve/methods.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "rbvi/mor/stages.hpp"
+#include "rbvi/mor/reduce.hpp"
 
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/imposed.hpp"

@@ -1,7 +1,7 @@
 #include "rbvi/par/interrupt.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/io/temporary_files.hpp"
+#include "rbvi/io/write_atomically.hpp"
 
 #include <cerrno>
 #include <cstdio>

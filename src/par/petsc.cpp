@@ -1,7 +1,7 @@
 #include "rbvi/par/petsc.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/io/start_hdf5.hpp"
+#include "rbvi/io/h5.hpp"
 #include "rbvi/par/session.hpp"
 
 #include <algorithm>

@@ -6,8 +6,6 @@
 #include "rbvi/fem/rigid_body_modes.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/vectors.hpp"
-#include "reduced_system.hpp"
-#include "saddle_system.hpp"
 
 #include <array>
 #include <optional>

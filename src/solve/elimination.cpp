@@ -1,11 +1,14 @@
 #include "elimination.hpp"
 
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/par/gather.hpp"
+#include "rbvi/solve/linear.hpp"
 #include "rbvi/solve/vectors.hpp"
 
 #include <array>
 #include <numeric>
+#include <string>
 
 namespace rbvi {
 
@@ -38,6 +41,32 @@ Handle<VecScatter> scatter_to_pivots(MPI_Comm comm, const std::vector<PetscInt> 
   Handle<VecScatter> scatter;
   RBVI_CALL(VecScatterCreate(u, from.get(), values, to.get(), scatter.put()));
   return scatter;
+}
+
+/// The whole matrix, and where its two parts are in vectors.
+struct Saddle {
+  Handle<Mat> matrix;
+  Handle<Mat> blocks; ///< owns the two index sets
+  std::array<IS, 2> parts{};
+};
+
+Saddle assembled(MPI_Comm comm, Mat a, Mat w, Mat c) {
+  Handle<Mat> reactions;
+  RBVI_CALL(MatTranspose(w, MAT_INITIAL_MATRIX, reactions.put()));
+  const std::array<Mat, 4> blocks{a, reactions.get(), c, nullptr};
+  Saddle saddle;
+  RBVI_CALL(MatCreateNest(comm, 2, nullptr, 2, nullptr, blocks.data(), saddle.blocks.put()));
+  RBVI_CALL(MatNestGetISs(saddle.blocks.get(), saddle.parts.data(), nullptr));
+  RBVI_CALL(MatConvert(saddle.blocks.get(), MATAIJ, MAT_INITIAL_MATRIX, saddle.matrix.put()));
+  return saddle;
+}
+
+/// visit(part of the vector).
+template <class Visit> void with_part(Vec whole, IS part, Visit &&visit) {
+  Vec values = nullptr;
+  RBVI_CALL(VecGetSubVector(whole, part, &values));
+  visit(values);
+  RBVI_CALL(VecRestoreSubVector(whole, part, &values));
 }
 
 } // namespace
@@ -135,6 +164,129 @@ void Elimination::reduce(Vec r) const {
 SparseMatrix Elimination::ties() const {
   const SparseMatrix all = block_.ties(contact_dofs_);
   return separate_ ? all : SparseMatrix(all.middleRows(first_, std::ssize(pivots_)));
+}
+
+void ReducedSystem::extend(Vec v) const {
+  if (z.count() > 0) z.extend(Vector::Zero(std::ssize(z.pivots())), v);
+}
+
+void ReducedSystem::reduce(Vec r) const {
+  if (w.count() > 0) w.reduce(r);
+}
+
+namespace {
+
+template <class Call> PetscErrorCode reported(MPI_Comm comm, Call &&call) {
+  try {
+    call();
+  } catch (const std::exception &error) {
+    SETERRQ(comm, PETSC_ERR_LIB, "%s", error.what());
+  }
+  return 0;
+}
+
+PetscErrorCode apply_system(Mat shell, Vec v, Vec result) {
+  ReducedSystem *system = nullptr;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(shell, &system));
+  PetscCall(reported(PETSC_COMM_SELF, [&] {
+    RBVI_CALL(VecCopy(v, system->scratch));
+    system->extend(system->scratch);
+    RBVI_CALL(MatMult(system->a, system->scratch, result));
+    system->reduce(result);
+  }));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode apply_preconditioner(PC pc, Vec r, Vec result) {
+  ReducedSystem *system = nullptr;
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &system));
+  PetscCall(reported(PETSC_COMM_SELF, [&] {
+    solve_linear(system->factor, r, result);
+    system->zero_pivots(result);
+  }));
+  PetscFunctionReturn(0);
+}
+
+} // namespace
+
+int solve_reduced(ReducedSystem &system, const Krylov &how, Vec right, Vec v) {
+  const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(v));
+  PetscInt local = 0;
+  RBVI_CALL(VecGetLocalSize(v, &local));
+  Handle<Mat> shell;
+  RBVI_CALL(
+      MatCreateShell(comm, local, local, PETSC_DETERMINE, PETSC_DETERMINE, &system, shell.put()));
+  RBVI_CALL(
+      MatShellSetOperation(shell.get(), MATOP_MULT, reinterpret_cast<void (*)()>(apply_system)));
+  Handle<KSP> ksp;
+  PC pc = nullptr;
+  RBVI_CALL(KSPCreate(comm, ksp.put()));
+  RBVI_CALL(KSPSetOptionsPrefix(ksp.get(), "hf_krylov_"));
+  RBVI_CALL(KSPSetType(ksp.get(), how.symmetric ? KSPCG : KSPGMRES));
+  if (!how.symmetric) RBVI_CALL(KSPGMRESSetRestart(ksp.get(), 100));
+  RBVI_CALL(KSPSetNormType(ksp.get(), KSP_NORM_UNPRECONDITIONED));
+  if (!how.symmetric) RBVI_CALL(KSPSetPCSide(ksp.get(), PC_RIGHT));
+  RBVI_CALL(KSPSetOperators(ksp.get(), shell.get(), shell.get()));
+  // Where the right-hand side is small the last solution can be far off: that is no divergence.
+  constexpr double any = 1e300;
+  RBVI_CALL(KSPSetTolerances(ksp.get(), how.relative, how.absolute, any, how.most_steps));
+  RBVI_CALL(KSPSetInitialGuessNonzero(ksp.get(), PETSC_TRUE));
+  RBVI_CALL(KSPGetPC(ksp.get(), &pc));
+  RBVI_CALL(PCSetType(pc, PCSHELL));
+  RBVI_CALL(PCShellSetContext(pc, &system));
+  RBVI_CALL(PCShellSetApply(pc, apply_preconditioner));
+  RBVI_CALL(KSPSetFromOptions(ksp.get()));
+  RBVI_CALL(KSPSolve(ksp.get(), right, v));
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  PetscInt steps = 0;
+  RBVI_CALL(KSPGetConvergedReason(ksp.get(), &reason));
+  RBVI_CALL(KSPGetIterationNumber(ksp.get(), &steps));
+  if (reason == KSP_DIVERGED_ITS || reason == KSP_DIVERGED_INDEFINITE_PC) return how.most_steps + 1;
+  if (reason < 0)
+    throw failure(std::string("the system of the active set was not solved (") +
+                  KSPConvergedReasons[reason] + ", " + std::to_string(steps) + " steps)");
+  return static_cast<int>(steps);
+}
+
+Vector solve_saddle(Mat a, Mat w, Mat c, Vec f, const Vector &right, Vec u) {
+  const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(a));
+  const Saddle saddle = assembled(comm, a, w, c);
+  Handle<Vec> x, b;
+  RBVI_CALL(MatCreateVecs(saddle.matrix.get(), x.put(), b.put()));
+  with_part(b.get(), saddle.parts[0], [&](Vec part) { RBVI_CALL(VecCopy(f, part)); });
+  with_part(b.get(), saddle.parts[1], [&](Vec part) { LocalValues(part).get() = right; });
+  Handle<KSP> ksp;
+  PC pc = nullptr;
+  RBVI_CALL(KSPCreate(comm, ksp.put()));
+  RBVI_CALL(KSPSetOptionsPrefix(ksp.get(), "hf_saddle_"));
+  RBVI_CALL(KSPSetType(ksp.get(), KSPPREONLY));
+  RBVI_CALL(KSPGetPC(ksp.get(), &pc));
+  RBVI_CALL(PCSetType(pc, PCLU));
+  RBVI_CALL(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  RBVI_CALL(KSPSetFromOptions(ksp.get()));
+  set_operator(ksp.get(), saddle.matrix.get(), Ordering::automatic);
+  solve_linear(ksp.get(), b.get(), x.get());
+  // One step of refinement; what MUMPS leaves where it fails is zero or not finite.
+  constexpr double enough = 1e-9;
+  const Handle<Vec> residual = like(b.get()), change = like(x.get());
+  const auto set_residual = [&] {
+    RBVI_CALL(MatMult(saddle.matrix.get(), x.get(), residual.get()));
+    RBVI_CALL(VecAYPX(residual.get(), -1, b.get()));
+  };
+  set_residual();
+  solve_linear(ksp.get(), residual.get(), change.get());
+  RBVI_CALL(VecAXPY(x.get(), 1, change.get()));
+  set_residual();
+  if (!(norm(residual.get()) <= enough * norm(b.get())))
+    throw failure("the system of the active set with its multipliers was solved to " +
+                  short_number(norm(residual.get()) / norm(b.get())) +
+                  " only: try -hf_contact condensed");
+  with_part(x.get(), saddle.parts[0], [&](Vec part) { RBVI_CALL(VecCopy(part, u)); });
+  Vector y;
+  with_part(x.get(), saddle.parts[1], [&](Vec part) { y = LocalValues(part).get(); });
+  return y;
 }
 
 } // namespace rbvi

@@ -9,7 +9,9 @@
 #pragma once
 
 #include "rbvi/contact/pivots.hpp"
+#include "rbvi/core/dense.hpp"
 #include "rbvi/fem/distributed_contact.hpp"
+#include "rbvi/par/petsc.hpp"
 
 namespace rbvi {
 
@@ -53,5 +55,43 @@ private:
   bool separate_ = true; ///< block_ is of this rank's constraints, else of all
   PivotBlock block_;
 };
+
+/// The equation of the displacement without the dofs that active constraints gave up
+/// (solve/eliminated.hpp), W^T A Z, with a preconditioner for it. What it refers to must outlive
+/// it.
+struct ReducedSystem {
+  Mat a;
+  const Elimination &z; ///< of the displacement by the constraints
+  const Elimination &w; ///< of the forces by the multipliers
+  KSP factor;           ///< preconditioner of A, or of A without the pivots
+  Vec scratch;          ///< a displacement
+
+  /// v + what the constraints without right-hand side say of the pivots, where v is zero.
+  void extend(Vec v) const;
+  /// W^T r, zero at the pivots.
+  void reduce(Vec r) const;
+  void zero_pivots(Vec v) const { z.set_pivots(Vector::Zero(std::ssize(z.pivots())), v); }
+};
+
+/// How a reduced system is solved.
+struct Krylov {
+  bool symmetric;
+  double relative, absolute; ///< residual: to that of zero, or itself
+  int most_steps;
+};
+
+/// Solves by conjugate gradients, or GMRES, for `v`, from where it is. Returns the steps;
+/// most_steps + 1 if they did not suffice, or if the preconditioner is not positive definite.
+int solve_reduced(ReducedSystem &system, const Krylov &how, Vec right, Vec v);
+
+/// The system of an active set with its multipliers in one matrix, where they cannot be eliminated:
+///
+///   A u + W^T y = f,      C u = c,
+///
+/// by a sparse LU factorisation (MUMPS) that the ranks share. Sets u and returns this rank's y.
+/// `w`, `c`: constraints x free displacement dofs; `right`: c of this rank's constraints. Throws
+/// failure, saying what to try, where the matrix is singular or what is found does not meet the
+/// system to 1e-9. Options under hf_saddle_. Collective.
+Vector solve_saddle(Mat a, Mat w, Mat c, Vec f, const Vector &right, Vec u);
 
 } // namespace rbvi

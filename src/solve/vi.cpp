@@ -1,6 +1,6 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/par/mat_entries.hpp"
+#include "rbvi/par/petsc.hpp"
 #include "rbvi/solve/local_frames.hpp"
 #include "rbvi/solve/methods.hpp"
 #include "rbvi/solve/vectors.hpp"

@@ -1,7 +1,7 @@
 #include "rbvi/study/bench.hpp"
 
+#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/local_fit.hpp"
 #include "rbvi/solve/methods.hpp"
 #include "rbvi/study/errors.hpp"
 #include "rbvi/study/interpolation.hpp"

@@ -1,6 +1,6 @@
 #include "rbvi/study/interpolation.hpp"
 
-#include "rbvi/core/local_fit.hpp"
+#include "rbvi/core/box.hpp"
 
 #include <algorithm>
 #include <cmath>

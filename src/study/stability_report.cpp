@@ -2,9 +2,9 @@
 
 #include "rbvi/mor/high_fidelity_pair.hpp"
 #include "rbvi/mor/reduce.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/par/columns.hpp"
 #include "rbvi/par/small_svd.hpp"
-#include "rbvi/par/turns.hpp"
 
 #include <algorithm>
 #include <limits>

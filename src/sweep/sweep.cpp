@@ -3,7 +3,6 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/checksum.hpp"
 #include "rbvi/io/h5.hpp"
-#include "rbvi/io/temporary_files.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/model/scene_text.hpp"
 #include "rbvi/par/collective.hpp"

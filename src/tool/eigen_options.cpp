@@ -1,11 +1,10 @@
 // Options of SLEPc's objects: which there are, and whether a run asks for them.
 #include "database.hpp"
-#include "uses.hpp"
+#include "table.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/mor/high_fidelity_constant.hpp"
+#include "rbvi/mor/high_fidelity_pair.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/par/small_eigen.hpp"
 #include "rbvi/par/small_svd.hpp"
 
 #include <algorithm>
@@ -108,8 +107,7 @@ void warn_of_eigen_options(MPI_Comm comm, const OfflineOptions &options) {
   over_ranks(comm, MPI_MIN, ignored);
   for (std::size_t i = 0; i < names.size() && rank_of(comm) == 0; ++i)
     if (ignored[i] != 0)
-      std::printf("warning: -%s has no effect here: no such object was needed\n",
-                  names[i].c_str());
+      std::printf("warning: -%s has no effect here: no such object was needed\n", names[i].c_str());
 }
 
 } // namespace rbvi

@@ -1,5 +1,5 @@
 // What the answers of a model are off by, printed, in tables and in the model.
-#include "errors.hpp"
+#include "verify.hpp"
 
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/output_table.hpp"

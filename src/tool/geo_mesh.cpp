@@ -3,7 +3,6 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/checksum.hpp"
-#include "rbvi/io/temporary_files.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/par/collective.hpp"
 

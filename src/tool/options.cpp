@@ -6,7 +6,6 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/fem/check_scene.hpp"
-#include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/tool/case_file.hpp"
 #include "rbvi/tool/cases.hpp"
@@ -16,6 +15,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <fstream>
 
 namespace rbvi {
 
@@ -128,6 +128,16 @@ void read_table(const std::vector<Option> &table, RunFiles &files) {
   }
 }
 
+/// A run leaves its own case file, which may be the one that another run left there.
+void check_case_of_run(const RunFiles &files) {
+  if (files.case_name.empty() || files.out.empty()) return;
+  std::string first_line;
+  std::getline(std::ifstream(files.case_name) >> std::ws, first_line);
+  if (first_line == run_case_header) return;
+  check_overwriting({"-out " + files.out.string() + ": its", case_of_run(files.out)},
+                    {{"the case file", files.case_name}});
+}
+
 } // namespace
 
 bool is_option(const std::string &word) {
@@ -222,6 +232,21 @@ ToolOptions read_options(MPI_Comm comm, const std::string &command, const Regist
     if (outside.empty()) throw;
     throw Error(error.status(), error.what() + ("; options from outside: " + outside));
   }
+}
+
+void check_outputs(MPI_Comm comm, const RunFiles &files, const std::string &mesh_file,
+                   const std::vector<NamedFile> &outputs) {
+  std::vector<NamedFile> inputs{{"the case file", files.case_name},
+                                {"the file of -mesh", mesh_file}};
+  for (const auto &[name, file] : files.set_files)
+    inputs.push_back({"the file of -" + name, file});
+  collectively(comm, [&] {
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+      check_overwriting(outputs[i], inputs);
+      check_overwriting(outputs[i], {outputs.begin(), outputs.begin() + static_cast<long>(i)});
+    }
+    check_case_of_run(files);
+  });
 }
 
 } // namespace rbvi

@@ -1,5 +1,5 @@
 // The options of the reduced model.
-#include "reduction_table.hpp"
+#include "table.hpp"
 
 #include "kinds.hpp"
 

@@ -2,7 +2,6 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
-#include "rbvi/io/temporary_files.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/tool/case_file.hpp"

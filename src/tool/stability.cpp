@@ -1,4 +1,4 @@
-#include "stability.hpp"
+#include "verify.hpp"
 
 #include "rbvi/par/collective.hpp"
 #include "rbvi/study/stability_report.hpp"

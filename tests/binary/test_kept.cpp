@@ -1,6 +1,6 @@
 // What a run keeps: the model of those samples that there are, the case that a model was made for,
 // sets and samples, whatever happens to files and processes.
-#include "rbvi/io/temporary_files.hpp"
+#include "rbvi/io/write_atomically.hpp"
 #include "run.hpp"
 
 #include <fcntl.h>

@@ -1,5 +1,5 @@
 // The lines that integrals over contact are taken along.
-#include "rbvi/contact/contact_lines.hpp"
+#include "rbvi/contact/named_outputs.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // A guess between scattered samples.
-#include "rbvi/core/local_fit.hpp"
+#include "rbvi/core/box.hpp"
 
 #include <gtest/gtest.h>
 

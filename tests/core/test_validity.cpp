@@ -3,7 +3,7 @@
 
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
-#include "rbvi/io/overwrite.hpp"
+#include "rbvi/io/write_atomically.hpp"
 #include "tests/catalogue.hpp"
 
 #include <cmath>

@@ -102,6 +102,25 @@ TEST(ImposedForms, AreThoseOfTheMatricesOfACell) {
     }
 }
 
+/// Loads of two boundaries that share facets count these once (Form::without): so does their work.
+TEST(ImposedForms, TheWorkOfAMotionIsOverWhatItsLoadIsOver) {
+  for (const bool mapped : {false, true}) {
+    Scene scene = body(mapped, {});
+    for (Term &term : scene.f)
+      term.form.without = {"sides"};
+    for (const Named<PointMap> &motion :
+         {everywhere(Point{1, 2, 0}), Named<PointMap>([](const FullMu &at, const Point &x) {
+            return Point{at[0] * x[1], at[1], 0};
+          })}) {
+      scene.motion = motion;
+      const Sum energy = imposed_energy(scene);
+      EXPECT_FALSE(energy.empty());
+      for (const Term &term : energy)
+        EXPECT_EQ(term.form.without, std::vector<std::string>{"sides"});
+    }
+  }
+}
+
 TEST(ImposedForms, AreExactWhereAllFactorsAreKnown) {
   const auto exact = [](const Sum &sum) {
     return std::ranges::all_of(sum, [](const Term &term) { return term.theta.has_value(); });

@@ -3,7 +3,7 @@
 #include "rbvi/contact/nitsche_curve.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/lagrange.hpp"
-#include "rbvi/fem/interface_mesh.hpp"
+#include "rbvi/fem/distributed_contact.hpp"
 #include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>

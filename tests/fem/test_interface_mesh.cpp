@@ -4,7 +4,7 @@
 #include "../core/refuses.hpp"
 #include "rbvi/contact/contact.hpp"
 #include "rbvi/contact/support.hpp"
-#include "rbvi/fem/interface_mesh.hpp"
+#include "rbvi/fem/distributed_contact.hpp"
 #include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>

@@ -3,8 +3,8 @@
 #include "rbvi/contact/curve.hpp"
 #include "rbvi/contact/pair.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/fem/interface_mesh.hpp"
-#include "rbvi/par/gather.hpp"
+#include "rbvi/fem/distributed_contact.hpp"
+#include "rbvi/par/collective.hpp"
 #include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>

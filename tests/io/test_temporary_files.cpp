@@ -1,5 +1,4 @@
 #include "rbvi/io/system_error.hpp"
-#include "rbvi/io/temporary_files.hpp"
 #include "rbvi/io/write_atomically.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 #include "../linear_algebra.hpp"
-#include "rbvi/mor/high_fidelity_constant.hpp"
+#include "rbvi/mor/high_fidelity_pair.hpp"
 #include "rbvi/mor/stability.hpp"
 
 #include "grid.hpp"

@@ -1,4 +1,3 @@
-#include "rbvi/par/small_eigen.hpp"
 
 #include "../mor/grid.hpp"
 #include "rbvi/core/error.hpp"

@@ -2,9 +2,8 @@
 #include "disk.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/model/online.hpp"
-#include "rbvi/mor/near_contact.hpp"
 #include "rbvi/mor/nodal_dual_basis.hpp"
-#include "rbvi/mor/stages.hpp"
+#include "rbvi/mor/reduce.hpp"
 #include "reduced.hpp"
 #include "tests/catalogue.hpp"
 

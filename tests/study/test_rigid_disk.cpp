@@ -5,7 +5,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
-#include "rbvi/model/collocated_law.hpp"
+#include "rbvi/model/law_problem.hpp"
 #include "rbvi/solve/response_solver.hpp"
 #include "rbvi/study/stability_report.hpp"
 #include "tests/catalogue.hpp"

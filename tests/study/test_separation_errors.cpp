@@ -4,8 +4,8 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
-#include "rbvi/model/collocated_law.hpp"
-#include "rbvi/mor/stages.hpp"
+#include "rbvi/model/law_problem.hpp"
+#include "rbvi/mor/reduce.hpp"
 #include "rbvi/study/separation_errors.hpp"
 #include "tests/catalogue.hpp"
 

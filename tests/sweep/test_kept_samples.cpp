@@ -2,7 +2,7 @@
 #include "sweep_test.hpp"
 
 #include "rbvi/io/h5.hpp"
-#include "rbvi/io/temporary_files.hpp"
+#include "rbvi/io/write_atomically.hpp"
 #include "tests/catalogue.hpp"
 
 #include <chrono>

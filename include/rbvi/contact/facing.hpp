@@ -72,10 +72,6 @@ inline double slip_along(const Point &n, const Point &motion) {
   return motion[1] * n[0] - motion[0] * n[1];
 }
 
-/// Throws failure where a body is pressed at x (reference) along a normal that points into it, so
-/// that it would have to be behind what it touches. `cosine`: between that normal and the body's.
-void check_pressed_side(double cosine, const Point &x);
-
 /// Contact of a boundary with something rigid, before it is by multipliers or by Nitsche's method.
 struct RigidContact {
   std::string boundary;

@@ -65,4 +65,8 @@ void friction_outputs(const Vector &images, double tangential_force, const Vecto
 /// what friction_outputs does.
 void support_outputs(const SupportState &state, Outputs &outputs);
 
+/// Throws failure where a body is pressed at x (reference) along a normal that points into it, so
+/// that it would have to be behind what it touches. `cosine`: between that normal and the body's.
+void check_pressed_side(double cosine, const Point &x);
+
 } // namespace rbvi

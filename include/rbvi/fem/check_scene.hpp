@@ -2,6 +2,7 @@
 // the cost of a few cells and points.
 #pragma once
 
+#include "rbvi/core/scene.hpp"
 #include "rbvi/fem/problem.hpp"
 
 namespace rbvi {
@@ -42,5 +43,9 @@ template <class Work> decltype(auto) asked(const std::string &what, Work &&work)
     throw bad_input(what + " asks for a parameter or a name that the scene does not have");
   }
 }
+
+/// Throws bad_input for an exact term whose kernel depends on parameters, or fills another number
+/// of values than the scene has: assembled without parameters it might end the program.
+void check_exact_kernels(const Scene &scene);
 
 } // namespace rbvi

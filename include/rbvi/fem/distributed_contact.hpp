@@ -1,3 +1,6 @@
+// The parts of the distributed mesh that contact interfaces are posed on, whole on every rank. They
+// are small beside the domain, so that contact operators are assembled without communication and
+// are bitwise the same for any number of ranks.
 // The contact side over the ranks, for solvers that condense nothing: B is a PETSc matrix, dual x
 // free displacement dofs, and g, the weights and multipliers are vectors of its rows. A dual node
 // belongs to the rank that owns it in the mesh, and its multipliers are successive rows there: the
@@ -6,9 +9,23 @@
 #pragma once
 
 #include "rbvi/contact/contact.hpp"
-#include "rbvi/fem/interface_mesh.hpp"
+#include "rbvi/fem/dofs.hpp"
+#include "rbvi/fem/trace.hpp"
 
 namespace rbvi {
+
+struct InterfacePlaces {
+  /// Of each contact of the scene. A Problem hands them over to its interfaces.
+  std::vector<InterfaceMesh> meshes;
+  std::vector<std::vector<PetscInt>> natural_nodes; ///< of their nodes
+  std::vector<PetscInt> natural_dofs;               ///< of each contact dof
+  Trace trace;                                      ///< contact dof -> displacement dof
+};
+
+/// Collective. Throws bad_input where a part of an interface is not there: no cell in a region, no
+/// edge on a boundary, or a boundary that is fixed where its kernels ask for free displacements;
+/// for curves in three dimensions; for a dof that two interfaces constrain.
+InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene &scene);
 
 struct DualLayout {
   MPI_Comm comm = MPI_COMM_NULL;

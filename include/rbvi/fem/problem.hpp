@@ -15,10 +15,11 @@
 #pragma once
 
 #include "rbvi/contact/named_outputs.hpp"
+#include "rbvi/element/output_cells.hpp"
 #include "rbvi/fem/distributed_contact.hpp"
+#include "rbvi/fem/dofs.hpp"
 #include "rbvi/fem/free_motions.hpp"
 #include "rbvi/fem/imposed.hpp"
-#include "rbvi/fem/output_cells.hpp"
 #include "rbvi/fem/summed.hpp"
 
 #include <memory>
@@ -150,5 +151,11 @@ double strained_share(const Problem &problem, const FullMu &mu, const Vector &u)
 /// collective.
 void add_named_outputs(const Problem &problem, const FullMu &mu, const Vector &u,
                        const Vector &lambda, Outputs &outputs);
+
+/// The same on every rank for any number of ranks. Throws bad_input for a point outside of the
+/// mesh, for a reaction of a boundary where nothing is fixed in its direction, or that shares nodes
+/// with a contact or a spring, whose forces on them are not known apart, and in three dimensions.
+/// Collective.
+OutputCells cells_of_outputs(const Scene &scene, const Mesh &mesh, const Dofs &dofs);
 
 } // namespace rbvi

@@ -3,6 +3,9 @@
 
 #include "rbvi/core/outputs.hpp"
 
+#include <string>
+#include <vector>
+
 namespace rbvi {
 
 /// A row of a table as its text stands there.
@@ -46,5 +49,12 @@ private:
 /// A whole table without errors and status. A column that is set in any row is there.
 void write_csv(std::ostream &out, const ParameterSpace &space, const std::vector<Mu> &mus,
                const std::vector<Outputs> &rows);
+
+/// The fields of a row; those in double quotes may hold commas, and quotes that are doubled. Throws
+/// bad_input for a quote that is not closed.
+std::vector<std::string> csv_fields(const std::string &line);
+
+/// In double quotes, which are doubled inside, without line breaks: one field of a row.
+std::string csv_quoted(const std::string &text);
 
 } // namespace rbvi

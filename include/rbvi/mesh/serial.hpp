@@ -2,8 +2,10 @@
 // the bridge between its plain arrays and DMPlex.
 #pragma once
 
+#include "rbvi/element/geometry.hpp"
 #include "rbvi/mesh/mesh.hpp"
 
+#include <cmath>
 #include <cstdint>
 
 namespace rbvi {
@@ -102,5 +104,9 @@ std::vector<Point> vertex_points(DM dm);
 
 /// Vertex points of a local cell or facet: dim + 1 or dim of them, the rest -1.
 std::array<PetscInt, 4> vertices_of(DM dm, PetscInt point);
+
+inline double distance(const Point &x, const Point &y) {
+  return std::hypot(x[0] - y[0], x[1] - y[1], x[2] - y[2]);
+}
 
 } // namespace rbvi

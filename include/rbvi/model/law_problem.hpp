@@ -3,6 +3,7 @@
 // multipliers.
 #pragma once
 
+#include "rbvi/method/collocated_friction.hpp"
 #include "rbvi/method/several_answers.hpp"
 #include "rbvi/model/column_laws.hpp"
 #include "rbvi/model/reduced_contact.hpp"
@@ -65,7 +66,7 @@ private:
   Matrix springs_, motions_;
 };
 
-/// Where queries start: from what the training samples around mu predict (core/local_fit.hpp), or
+/// Where queries start: from what the training samples around mu predict (core/box.hpp), or
 /// the last answer where that is asked for.
 class LawStarts {
 public:
@@ -84,5 +85,12 @@ private:
   const Matrix samples_; ///< where the starts are, as parts of the box
   Vector last_;
 };
+
+/// The functions in coefficients of the nodal dual basis: m x (R + S).
+Matrix multiplier_coefficients(const MultiplierBasis &basis);
+
+/// The reduced problem; its rows are those of the collocation nodes.
+CollocatedProblem collocated_problem(const MultiplierBasis &basis, const LawAtMu &law,
+                                     const BodyAtMu &body);
 
 } // namespace rbvi

@@ -2,7 +2,7 @@
 // mu, the law, then the displacement in V_N by A_N u = F_N - B_N^T x. At every node by
 // friction_answer; where contact follows the displacement, linearised at the states of
 // method/nonlinear.hpp, the body answering by its compliance on the contact dofs, so that the
-// multipliers are those of the full problem; or on fewer functions (model/collocated_law.hpp): with
+// multipliers are those of the full problem; or on fewer functions (model/law_problem.hpp): with
 // the condensed operator that answer is checked at all nodes, and mended by friction_answer, which
 // starts from it, where it fails. Where the self-check met another answer to the law at all nodes,
 // every query is solved by the rule of the high-fidelity solver and looks for others.

@@ -4,6 +4,7 @@
 // Niakh (2022): (3.44), (3.45), Remark 3.3.1.
 #pragma once
 
+#include "rbvi/contact/contact.hpp"
 #include "rbvi/contact/named_outputs.hpp"
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/model/cell_outputs.hpp"
@@ -11,7 +12,6 @@
 #include "rbvi/model/law_solver.hpp"
 #include "rbvi/model/model.hpp"
 #include "rbvi/model/nitsche_solver.hpp"
-#include "rbvi/model/nodal_trace.hpp"
 
 #include <memory>
 
@@ -20,6 +20,28 @@ namespace rbvi {
 static_assert(EIGEN_DEFAULT_ALIGN_BYTES == 64 && alignof(Eigen::Matrix<double, 8, 1>) == 64,
               "include headers of rbvi before those of Eigen, or define EIGEN_MAX_ALIGN_BYTES and "
               "EIGEN_MAX_STATIC_ALIGN_BYTES as 64 in the whole program: both share memory");
+
+/// The primal basis of a model where single nodes are constrained, and the gap that it leaves
+/// there.
+class NodalTrace {
+public:
+  /// `model` must outlive it.
+  NodalTrace(const ReducedModel &model, const Contact &contact);
+  /// nodal_gap - nodal_b u; infinite at nodes where the model has no displacement.
+  Vector gap_left(const ContactOperators &operators, const Vector &u) const;
+  /// Throws failure where `gap`, of gap_left, says that bodies meet at a node without multipliers,
+  /// in a model whose multipliers are those near contact.
+  void check_outside(const ContactOperators &operators, const Vector &gap) const;
+
+private:
+  const ReducedModel &model_;
+  std::vector<Index> dofs_;   ///< contact dofs that nodal_b acts on; empty: all
+  Matrix trace_;              ///< the primal basis there
+  std::vector<bool> unknown_; ///< of each contact dof; empty: none is
+  /// Where b separates per normal multiplier whether it has a column, else per contact dof whether
+  /// some column meets it; empty: all.
+  std::vector<bool> held_;
+};
 
 /// Answers queries on a model that it does not own. An answer depends on its mu and the model, to
 /// round-off, not on the queries before (but QueryOptions::warm).

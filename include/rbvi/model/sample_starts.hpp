@@ -2,8 +2,8 @@
 // parameter leaves. That answer starts from rest, is found when first asked for, and kept.
 #pragma once
 
+#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/local_fit.hpp"
 
 #include <optional>
 #include <vector>

@@ -3,10 +3,31 @@
 #pragma once
 
 #include "rbvi/fem/problem.hpp"
-#include "rbvi/mor/high_fidelity_constant.hpp"
 #include "rbvi/mor/stability.hpp"
+#include "rbvi/par/petsc.hpp"
 
 namespace rbvi {
+
+/// Smallest and largest singular value of b between V and the span of all multipliers, normal and
+/// tangential ones together.
+struct PairConstants {
+  double beta, c;
+};
+
+/// By SLEPc's EPS, prefix infsup_: beta^2 and c^2 are the smallest and the largest eigenvalue of
+/// B V^-1 B^T x = lambda W x. The largest one is found with `v`, a solver of V; the smallest one as
+/// that of
+///   [ V  B^T ] [ u ]            [ 0  0 ] [ u ]
+///   [ B  0   ] [ x ] = -lambda  [ 0  W ] [ x ]
+/// nearest to zero, by inverse iteration: one factorisation of the matrix on the left by MUMPS over
+/// the ranks. Without it the condition number, c^2 / beta^2, grows with each refinement. `b`:
+/// multipliers x displacement dofs; `w`: their Gram matrix. Throws failure if rows of b depend on
+/// each other, or if an iteration does not converge. Collective.
+PairConstants iterated_constants(KSP v, Mat b, Mat w);
+
+/// The EPS of both for so many multipliers, its options read. Throws failure for a value that SLEPc
+/// refuses. Collective.
+Handle<EPS> make_infsup_eps(MPI_Comm comm, PetscInt multipliers);
 
 /// Whether iterations find them faster than dense matrices: m^3 > 1e5 n for m multipliers and n
 /// displacement dofs (a region of more than some 700 nodes; on a curve hardly ever).

@@ -1,6 +1,9 @@
-// Dual bases whose coefficients are values at nodes, of the mesh or of a coarser one.
+// Dual bases whose coefficients are values at nodes, of the mesh or of a coarser one, and the part
+// of one that can carry: multipliers far from contact are zero for every mu, and the condensed
+// operator does without them.
 #pragma once
 
+#include "rbvi/contact/contact.hpp"
 #include "rbvi/fem/problem.hpp"
 
 namespace rbvi {
@@ -18,5 +21,12 @@ Matrix nodal_dual_basis(const Problem &problem, const Matrix &snapshots, int lev
 
 /// Coefficients of multipliers (dual dofs x P) in such a basis, by least squares.
 Matrix nodal_coefficients(const Matrix &basis, const Matrix &multipliers);
+
+/// The columns of a nodal dual basis (dual dofs x any number) whose nodes carry in some sample
+/// (`snapshots`: multipliers, dual dofs x P), or are no farther from one that does than `ring`
+/// times the extent of those of their interface (the diagonal of their bounding box), rising. All
+/// of an interface on which fewer than two nodes carry. Infinite: all.
+std::vector<Index> columns_near_contact(const Contact &contact, const Matrix &basis,
+                                        const Matrix &snapshots, double ring);
 
 } // namespace rbvi

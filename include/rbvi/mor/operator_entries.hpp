@@ -3,7 +3,7 @@
 
 #include "rbvi/fem/problem.hpp"
 #include "rbvi/mor/eim.hpp"
-#include "rbvi/par/mat_entries.hpp"
+#include "rbvi/par/petsc.hpp"
 
 namespace rbvi {
 

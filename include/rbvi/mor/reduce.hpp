@@ -2,11 +2,11 @@
 // Niakh (2022): (2.20).
 #pragma once
 
+#include "rbvi/model/model.hpp"
 #include "rbvi/mor/affine.hpp"
 #include "rbvi/mor/condensed.hpp"
 #include "rbvi/mor/cones.hpp"
 #include "rbvi/mor/gcns.hpp"
-#include "rbvi/mor/multiplier_basis.hpp"
 #include "rbvi/mor/nitsche_quadrature.hpp"
 #include "rbvi/mor/pod.hpp"
 #include "rbvi/mor/stability.hpp"
@@ -14,6 +14,33 @@
 #include "rbvi/sweep/sweep.hpp"
 
 namespace rbvi {
+
+/// Functions that the multipliers of contact with friction are combined from (Niakh 2022, 3.3.2),
+/// in coefficients of the nodal dual basis: m of them, k for lambda_n and the rest for lambda_tau,
+/// of the interfaces with friction alone. Niakh (2022): (3.36)-(3.38).
+struct MultiplierOptions {
+  MultiplierReduction reduction = MultiplierReduction::automatic;
+  double tangential = 1e-4; ///< collocated: tolerance of POD of lambda_tau
+  bool exact = true;        ///< collocated: NodalLaw::mended
+};
+
+struct MultiplierBases {
+  MultiplierBasis basis;
+  ConeHistory normal;
+  std::vector<double> tangential; ///< error of POD with 0, 1, ... modes, as (3.60c)
+};
+
+/// The functions of `basis` at all dual dofs, those of lambda_n first: dual dofs x (R + S).
+/// `nodal`: the nodal dual basis, whose coefficients they are.
+Matrix multiplier_functions(const Matrix &nodal, const MultiplierBasis &basis);
+
+/// A cone of lambda_n and, with friction, modes of lambda_tau: as few as leave `tangential`.
+/// `coefficients`: m x P, `normal` rows of lambda_n first; without friction they are all.
+/// `product`: m x m, its blocks of lambda_n and lambda_tau. Throws failure where the snapshots have
+/// no tangential stress at all.
+MultiplierBases make_multiplier_basis(const Matrix &coefficients, Index normal,
+                                      const SparseMatrix &product, double tangential,
+                                      const ConeOptions &cone);
 
 /// What is added to the modes.
 enum class Enrichment {
@@ -154,5 +181,17 @@ void describe_mesh(const Problem &problem, ReducedModel &model);
 /// T(mu) X in coordinates for every mu of the set (n_c x columns of X each). Not collective.
 std::vector<Matrix> supremizers_at(Problem &problem, const RieszSpace &riesz, const Matrix &x,
                                    const std::vector<ContactPoint> &set);
+
+namespace stage {
+inline constexpr StageName interpolation("interpolation"), pod("POD"), condensation("condensation"),
+    cone("cone"), multipliers("multipliers"), riesz("Riesz representers"),
+    infsup_tolerance("inf-sup tolerance"), pga("PGA"), contact_curve("contact curve"),
+    collocation("collocation nodes"), projection("projection"), self_check("self-check");
+} // namespace stage
+
+/// One row per stage. `made` null: the plan, in which what hangs on the separation of the operators
+/// is said as a condition; else what was done, without the seconds.
+StageTable reduction_stages(const Scene &scene, const ReduceOptions &options,
+                            const Reduction *made = nullptr);
 
 } // namespace rbvi

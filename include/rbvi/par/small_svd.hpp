@@ -1,9 +1,12 @@
-// Singular values of small dense matrices by SLEPc (SVDLAPACK), with the number converged checked.
+// Singular values of small dense matrices, and eigenpairs of symmetric ones, by SLEPc (SVDLAPACK,
+// EPSLAPACK), with the number converged checked.
 // One SVD object for each prefix serves all calls of a process.
 #pragma once
 
 #include "rbvi/core/dense.hpp"
 #include "rbvi/par/petsc.hpp"
+
+#include <string>
 
 namespace rbvi {
 
@@ -26,5 +29,25 @@ Vector singular_values(const Matrix &matrix, const char *prefix = "");
 /// An SVD as these functions use it, its options read. Throws failure for a value that SLEPc
 /// refuses.
 Handle<SVD> make_small_svd(const char *prefix);
+
+/// One EPS for matrices of any size, one after the other. Serial.
+class SmallEigen {
+public:
+  /// `prefix`: of its options ("pga_": -pga_eps_view, ...). Throws failure for a value that SLEPc
+  /// refuses.
+  explicit SmallEigen(const char *prefix);
+
+  /// All n eigenvalues, decreasing; the lower triangle of `matrix` (n x n) is read. Throws failure
+  /// if an entry is not finite or SLEPc does not return every pair.
+  Vector values(const Matrix &matrix);
+
+  /// Eigenvectors of the first `count` of them, n x count, orthonormal columns.
+  Matrix vectors(Index count) const;
+
+private:
+  std::string prefix_;
+  Handle<EPS> eps_;
+  Index size_ = 0; ///< of the last matrix
+};
 
 } // namespace rbvi

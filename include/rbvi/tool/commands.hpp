@@ -45,10 +45,6 @@ std::vector<std::filesystem::path> write_check(const std::string &vtu, const Pro
 /// the world.
 void command_check(const MeasureOptions &options, const SolveOptions &solve);
 
-/// Solves at the tests of the scene, and prints what is expected, found, and how far it is off.
-/// Throws failure if one does not pass. Collective on the world.
-void run_tests(const Setup &setup);
-
 /// Writes NAME/case.yaml, a case to begin with; of a Gmsh mesh, if one is named, with its parts.
 void command_new(const std::string &name, const std::string &mesh);
 

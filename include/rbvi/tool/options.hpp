@@ -2,8 +2,8 @@
 // PETSc's files and variables), checked before any work starts.
 #pragma once
 
-#include "rbvi/io/overwrite.hpp"
 #include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/io/write_atomically.hpp"
 #include "rbvi/model/answer.hpp"
 #include "rbvi/mor/reduce.hpp"
 

@@ -1,13 +1,21 @@
-// The part of verify that is about stability.
+// The parts of verify: errors over the validation set and on the boundary of the box, stability.
 #pragma once
 
 #include "rbvi/fem/problem.hpp"
 #include "rbvi/model/model.hpp"
+#include "rbvi/study/errors.hpp"
 
 #include <filesystem>
 #include <string>
 
 namespace rbvi {
+
+/// Prints the errors of the model and of its modes alone, writes their tables to the directory
+/// `out`, and stores what an answer is told of them in the model. `w`: the product of W. The sets
+/// may share a scale (share_scale); `boundary` may be empty. Returns the seconds of a
+/// query, the median. Serial.
+double check_errors(ReducedModel &model, const SparseMatrix &w, const Truths &validation,
+                    const Truths &boundary, const std::filesystem::path &out);
 
 /// Why there are no inf-sup constants to verify; empty: there are.
 std::string no_constants(const ReducedModel &model);
