@@ -33,7 +33,7 @@ void check(const std::vector<GcnsSample> &samples, const Matrix &normal, const M
 }
 
 /// What one reduced solution leaves at all nodes.
-struct Answer {
+struct NodeAnswer {
   double error = 0; ///< |lambda_tau - T b|
   Vector excess;    ///< [|T b| - s]_+
   double scale = 0; ///< largest |T b| or s
@@ -73,7 +73,7 @@ public:
 private:
   /// Solves with the nodes of this step and takes those of the next; false: this was the last.
   bool step(const GcnsOptions &options) {
-    const std::vector<Answer> answers = solve();
+    const std::vector<NodeAnswer> answers = solve();
     if (answers.empty()) return false;
     record(answers);
     const std::vector<int> next = largest(answers[result_.selected.back()]);
@@ -106,8 +106,8 @@ private:
   }
 
   /// Answers at all mu; none if one was not found, and the selection ends with what it has.
-  std::vector<Answer> solve() {
-    std::vector<Answer> answers;
+  std::vector<NodeAnswer> solve() {
+    std::vector<NodeAnswer> answers;
     for (std::size_t k = 0; k < samples_.size(); ++k) {
       const GcnsSample &sample = samples_[k];
       std::vector<FrictionBound> bounds =
@@ -131,13 +131,13 @@ private:
     return answers;
   }
 
-  Answer answer(const GcnsSample &sample, const std::vector<FrictionBound> &bounds,
-                const Vector &x) const {
+  NodeAnswer answer(const GcnsSample &sample, const std::vector<FrictionBound> &bounds,
+                    const Vector &x) const {
     const Vector pressure = normal_ * x.head(normal_.cols());
     const Vector traction = tangential_ * x.tail(tangential_.cols());
     const Vector s =
         Vector::NullaryExpr(pressure.size(), [&](Index j) { return bounds[j].value(pressure[j]); });
-    Answer result;
+    NodeAnswer result;
     result.error = norm(sample.tangential - traction);
     result.excess = (traction.cwiseAbs() - s).cwiseMax(0.0);
     result.scale = std::max(traction.cwiseAbs().maxCoeff(), s.maxCoeff());
@@ -145,7 +145,7 @@ private:
   }
 
   /// The history of this step; mu_q is the first of those with the largest violation.
-  void record(const std::vector<Answer> &answers) {
+  void record(const std::vector<NodeAnswer> &answers) {
     double error = 0, violation = 0;
     for (std::size_t k = 0; k < answers.size(); ++k) {
       error = std::max(error, answers[k].error / sizes_[k]);
@@ -161,7 +161,7 @@ private:
   }
 
   /// The nodes not taken where the violation is largest; none where it is zero.
-  std::vector<int> largest(const Answer &answer) const {
+  std::vector<int> largest(const NodeAnswer &answer) const {
     double most = 0;
     for (std::size_t j = 0; j < taken_.size(); ++j)
       if (taken_[j] == 0) most = std::max(most, answer.excess[j]);
