@@ -147,6 +147,43 @@ std::size_t count_pieces(const InterfaceMesh &mesh) {
   return chained(edges_of(mesh, all)).shape.pieces.size();
 }
 
+namespace {
+
+/// The ends of an edge of one boundary, the body on the left, and the number of its middle node.
+struct EdgeEnds {
+  Point begin, end;
+  int middle;
+};
+
+EdgeEnds ends_of(const InterfaceMesh &mesh, Index e) {
+  const int edge = mesh.edges.empty() ? 0 : mesh.edges[e], *nodes = mesh.nodes_of(e);
+  const auto [i, j] = simplex_edges[edge];
+  return {mesh.points[nodes[i]], mesh.points[nodes[j]], mesh.edges.empty() ? 2 : 3 + edge};
+}
+
+} // namespace
+
+void check_body_normal(const Scene &scene, const Facing &facing, const InterfaceMesh &mesh) {
+  constexpr double round_off = 0.02; // of vertices near each other
+  if (!facing.body_normal) return;
+  FullMu mu;
+  for (const Parameter &parameter : scene.parameters.all)
+    mu.push_back(parameter.value);
+  for (Index e = 0; e < mesh.count(); ++e) {
+    const auto [begin, end, unused] = ends_of(mesh, e);
+    const Point along = scene.map(mu, end) - scene.map(mu, begin), middle = (begin + end) / 2,
+                n = facing.body_normal(mu, middle),
+                of_edge = Point{along[1], -along[0], 0} / norm(along);
+    const double turning = norm(facing.body_normal(mu, end) - facing.body_normal(mu, begin));
+    if (!(norm(n - of_edge) <= turning + round_off))
+      throw bad_input("scene " + scene.name + ": the normal of the contact boundary at (" +
+                      short_number(middle[0]) + ", " + short_number(middle[1]) + ") is (" +
+                      short_number(n[0]) + ", " + short_number(n[1]) + "), and that of its edge (" +
+                      short_number(of_edge[0]) + ", " + short_number(of_edge[1]) +
+                      "): does the boundary have another circle, or is it that of a hole?");
+  }
+}
+
 Facing on_arcs(Facing facing, const InterfaceMesh &mesh) {
   struct Arc {
     Point begin, chord, centre;
@@ -155,10 +192,8 @@ Facing on_arcs(Facing facing, const InterfaceMesh &mesh) {
   constexpr double straight = 1e-9; // of the chord
   std::vector<Arc> arcs;
   for (Index e = 0; e < mesh.count() && mesh.degree == 2; ++e) {
-    const int edge = mesh.edges.empty() ? 0 : mesh.edges[e], *nodes = mesh.nodes_of(e);
-    const auto [i, j] = simplex_edges[edge];
-    const Point &begin = mesh.points[nodes[i]], &end = mesh.points[nodes[j]],
-                &middle = mesh.points[nodes[mesh.edges.empty() ? 2 : 3 + edge]];
+    const auto [begin, end, number] = ends_of(mesh, e);
+    const Point &middle = mesh.points[mesh.nodes_of(e)[number]];
     const Point rise = middle - (begin + end) / 2, chord = end - begin;
     const double height = norm(rise), half = norm(chord) / 2;
     if (height <= straight * half) continue;

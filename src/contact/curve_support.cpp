@@ -91,6 +91,7 @@ CurveSupport::CurveSupport(const Scene &scene, InterfaceMesh interface_mesh,
   if (mesh_.components != 2)
     throw bad_input("scene " + scene.name +
                     ": a rigid support is for displacements of two components");
+  check_body_normal(scene, facing_, mesh_);
   const int copies = friction_.law == FrictionLaw::none ? 1 : 2;
   set_dual(shape_.vertices(), copies, rigid.lumped,
            linear_gram(mesh_.points, shape_, copies, scene.axisymmetric));

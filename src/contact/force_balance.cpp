@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 namespace rbvi {
@@ -65,34 +66,55 @@ double TwoRoads::difference() const {
   return result;
 }
 
-std::vector<TwoRoads> two_roads(const Scene &scene, const ContactInterface &interface,
-                                const FullMu &mu, const ContactState &state, const Vector &lambda,
+std::vector<TwoRoads> two_roads(const Scene &scene, ContactInterface &interface, const FullMu &mu,
+                                const ContactState &state, const Vector &lambda,
                                 const Vector &solved) {
   const InterfaceMesh &mesh = interface.mesh();
-  if (mesh.dim != 2 || mesh.components != 2) return {};
-  const PointForces points = interface.point_forces(mu, state, lambda);
-  if (points.empty()) return {};
+  const bool membrane = mesh.components == 1;
+  PointForces points = interface.point_forces(mu, state, lambda);
+  if (membrane) {
+    ContactOperators nodal;
+    interface.assemble_nodal(mu, state, lambda, nodal);
+    for (Index i = 0; i < nodal.weights.size(); ++i)
+      points.push_back({0, {}, {nodal.weights[i] * lambda[i], 0, 0}});
+  }
+  if (points.empty() || (mesh.dim != 2 && !membrane)) return {};
   std::vector<TwoRoads> sides(mesh.parts.size());
   for (const auto &[part, at, force] : points)
     sides[part].add_point(at, force);
   Vector forces = interface.nodal_forces(mu, state, lambda);
   if (solved.size() > 0) take_solved(mesh, solved, forces);
-  const std::vector<Point> at = arms(scene, mu, mesh);
+  const std::vector<Point> at =
+      membrane ? std::vector<Point>(mesh.points.size()) : arms(scene, mu, mesh);
   std::size_t node = 0;
   for (std::size_t part = 0; part < sides.size(); ++part)
     for (int k = 0; k < mesh.parts[part]; ++k, ++node) {
-      const Index first = 2 * static_cast<Index>(node);
-      sides[part].add_node(at[node], {forces[first], forces[first + 1], 0});
+      const Index first = mesh.components * static_cast<Index>(node);
+      sides[part].add_node(at[node], {forces[first], membrane ? 0 : forces[first + 1], 0});
     }
   return sides;
+}
+
+TwoRoads two_roads(const std::vector<NitscheFace> &faces, const Matrix &pressures,
+                   const Vector &bounds) {
+  TwoRoads roads;
+  const Vector slopes = terms_of(faces).weighted(&PointTerm::slope, pressures, bounds);
+  for (Index i = 0; i < pressures.rows(); ++i) {
+    const NitscheFace &face = faces[static_cast<std::size_t>(i) / 4];
+    const NitschePoint &point = face.points[static_cast<std::size_t>(i) % 4];
+    NitschePoint::Row row = slopes[i] * point.normal(face.gamma);
+    if (bounds.size() > 0) row += slopes[pressures.rows() + i] * point.tangential(face.gamma);
+    const auto of_nodes = row.reshaped(2, 6);
+    roads.add_node({}, {of_nodes.row(0).sum(), of_nodes.row(1).sum(), 0});
+  }
+  return roads;
 }
 
 void check_forces(const Scene &scene, const Contact &contact, const FullMu &mu,
                   const ContactState &state, const Vector &lambda, const SparseMatrix *b,
                   double tolerance) {
   for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
-    const ContactInterface &interface = *contact.interfaces[i];
-    if (interface.nitsche() != nullptr) continue;
+    ContactInterface &interface = *contact.interfaces[i];
     const Index first = contact.first_row[i], count = interface.dual().size();
     const Vector own = lambda.segment(first, count);
     // B of contact that follows the displacement may be that of the iterate before.
@@ -111,6 +133,26 @@ void check_forces(const Scene &scene, const Contact &contact, const FullMu &mu,
                       " of their terms apart, moments counted: does each function of this contact "
                       "return the same each time that it is asked?");
   }
+}
+
+void check_forces(const NitscheLayer &layer, const FullMu &mu, const Vector &u, double tolerance) {
+  const std::vector<NitscheFace> faces = nitsche_faces(layer, mu, layer.cells, u);
+  const Matrix pressures = nitsche_pressures(faces, u);
+  const Vector bounds = nitsche_bounds(faces, pressures);
+  Outputs outputs;
+  nitsche_outputs(layer, mu, faces, u, pressures, bounds, outputs);
+  TwoRoads roads = two_roads(faces, pressures, bounds);
+  const auto of_domain = [&](const std::optional<double> &whole, double by_nodes) {
+    return whole ? *whole / image_count(layer.scene.mirrors) : by_nodes;
+  };
+  roads.by_points = {of_domain(outputs.horizontal_reaction, roads.by_nodes[0]),
+                     of_domain(outputs.reaction, roads.by_nodes[1]), 0};
+  if (const double apart = roads.difference(); !(apart <= tolerance))
+    throw failure(
+        "the forces of contact by Nitsche's method do not balance: by outputs they are (" +
+        short_number(roads.by_points[0]) + ", " + short_number(roads.by_points[1]) +
+        "), by the equations that were solved (" + short_number(roads.by_nodes[0]) + ", " +
+        short_number(roads.by_nodes[1]) + ")");
 }
 
 } // namespace rbvi

@@ -55,6 +55,7 @@ public:
     ends_ = shape.ends;
     NitscheCurve &curve_here = layer_.curves.front();
     curve_here.facing = on_arcs(std::move(curve_here.facing), mesh_);
+    check_body_normal(scene, curve_here.facing, mesh_);
     curve_here.middle = middle_of(scene.mirrors, dual_.points, is_one_open_piece(shape));
     curve_here.images = image_counts(scene.mirrors, dual_.points);
     for (std::size_t k = 0; k < shape.pieces.size(); ++k) {

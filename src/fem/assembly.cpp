@@ -35,12 +35,6 @@ template <class Visit> void visit_couplings(const Dofs &dofs, Visit &&visit) {
       if (coupling.rows[i] >= dofs.first_free && coupling.rows[i] < end) visit(coupling, i);
 }
 
-bool are_same(const std::vector<Mean> &some, const std::vector<Mean> &others) {
-  return std::ranges::equal(some, others, [](const Mean &one, const Mean &other) {
-    return one.boundary == other.boundary && one.direction == other.direction;
-  });
-}
-
 } // namespace
 
 std::vector<int> imposed_on(const Mesh &mesh, const Dofs &dofs, std::size_t cell,

@@ -251,7 +251,8 @@ void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vec
 }
 
 void OnlineSolver::check_forces(const ReducedAnswer &solution) const {
-  if (nitsche_) return;
+  if (nitsche_)
+    return rbvi::check_forces(layer_of(contact_), solution.mu, model_.contact.trace * solution.u);
   const Vector lambda = multiplier(solution);
   const ContactState state = nodal_operators(solution, lambda).state;
   rbvi::check_forces(scene_, contact_, solution.mu, state, lambda, nullptr);

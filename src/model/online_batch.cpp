@@ -249,6 +249,7 @@ void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::os
   if (to_file) report(arguments, solver, tally, out);
   std::ostream &warnings = to_file ? out : std::cerr;
   warn_of_violation(solver.model(), tally.violation, warnings);
+  warn_of_balance(warnings, solver.model());
   warn_of_failed_samples(tally.near_failed, warnings);
   warn_of_unvalidated(tally.unvalidated, warnings);
   if (!to_file && expected_errors(solver.model()).count == 0)

@@ -131,6 +131,7 @@ void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ost
   out << describe(solver.scene().parameters, mu) << '\n';
   print_outputs(out, outputs, errors);
   warn_of_violation(solver.model(), violation(outputs), out);
+  warn_of_balance(out, solver.model());
   warn_of_failed_samples(nearest_sample_failed(solver.model(), mu) ? 1 : 0, out);
   warn_of_unvalidated(inside && beyond_validation(solver.model(), mu) ? 1 : 0, out);
   ResolutionTally resolution;

@@ -161,23 +161,42 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   label(out, "self-check");
   print_self_check(out, model.made.self_check, model.scene.parameters);
   print_several_answers(out, model);
+  warn_of_balance(out, model);
   if (model.body.supremizers > 0)
     label(out, "  decorrelated") << validation(model.made.validation_decorrelated) << '\n';
 }
 
-void print_several_answers(std::ostream &out, const ReducedModel &model) {
-  if (!has_several_answers(model)) return;
-  std::vector<double> known = model.made.histories.at("self_check/other");
+namespace {
+
+/// A value that the self-check keeps, and its parameters, to the digits that people read.
+std::array<std::string, 2> worst_of(const ReducedModel &model, const std::string &history) {
+  std::vector<double> known = model.made.histories.at(history);
   for (double &value : known)
     value = parse_number(short_number(value), "parameter");
+  return {short_number(known.front()),
+          describe(model.scene.parameters, Mu(known.begin() + 1, known.end()))};
+}
+
+} // namespace
+
+void print_several_answers(std::ostream &out, const ReducedModel &model) {
+  if (!has_several_answers(model)) return;
+  const auto [apart, at] = worst_of(model, "self_check/other");
   const bool reduced = model.contact.law->reduction == MultiplierReduction::collocated;
-  out << "  the " << (reduced ? "reduced " : "") << "law of friction has several answers, "
-      << short_number(known.front()) << " of the largest multiplier apart at "
-      << describe(model.scene.parameters, Mu(known.begin() + 1, known.end())) << ": a query takes "
+  out << "  the " << (reduced ? "reduced " : "") << "law of friction has several answers, " << apart
+      << " of the largest multiplier apart at " << at << ": a query takes "
       << (reduced
               ? "the one that the nearest training parameter leads to"
               : "the one by rule (OUTPUTS.md), as a full solve, and says where there are others")
       << '\n';
+}
+
+void warn_of_balance(std::ostream &out, const ReducedModel &model) {
+  if (!model.made.histories.contains("self_check/balance")) return;
+  const auto [left, at] = worst_of(model, "self_check/balance");
+  out << "warning: forces on a body, its reactions among them, miss their balance by up to " << left
+      << " of the largest (" << at << "): reactions are no more exact than that; use more training "
+      << "parameters, or smaller tolerances\n";
 }
 
 void warn_of_other_answers(std::ostream &out, long not_alone, long all) {

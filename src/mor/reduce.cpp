@@ -4,6 +4,7 @@
 #include "rbvi/model/self_check.hpp"
 #include "rbvi/mor/high_fidelity_pair.hpp"
 #include "rbvi/mor/nodal_dual_basis.hpp"
+#include "rbvi/mor/reduced_balance.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/methods.hpp"
 
@@ -234,6 +235,7 @@ Checked check_answers(const Problem &problem, ReducedModel &model, StageTable &s
     found = {model.made.self_check.unanswered, model.made.self_check.answered() ? 1 : 0};
   });
   MPI_Bcast(found.data(), 2, MPI_INT, 0, problem.comm());
+  compare_balance(problem, model);
   return {found[0], found[1] != 0};
 }
 

@@ -5,6 +5,7 @@
 #include "rbvi/contact/history.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/imposed.hpp"
+#include "rbvi/fem/body_balance.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/vectors.hpp"
 
@@ -16,6 +17,16 @@ namespace rbvi {
 namespace {
 
 constexpr double least_told = 1e-8, least_known = 1e-3; ///< of u, relative
+constexpr double balanced = 1e-10;                      ///< forces on a body, of their sizes
+constexpr double of_stresses = 1e-3;                    ///< and of |diag(A) u|: round-off
+
+/// |diag(A) u|.
+double size_of_stresses(const Operators &op, Vec u) {
+  const Handle<Vec> terms = like(u);
+  RBVI_CALL(MatGetDiagonal(op.a, terms.get()));
+  RBVI_CALL(VecPointwiseMult(terms.get(), terms.get(), u));
+  return norm(terms.get());
+}
 
 } // namespace
 
@@ -150,6 +161,8 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
   result.outputs.seconds = MPI_Wtime() - start;
   check_finite(result.outputs);
   method_->check(result);
+  check_balance(problem_, op.mu, result.outputs, std::max(balanced, 10 * result.residual),
+                balanced * of_stresses * size_of_stresses(op, result.free_u.get()));
   solved_.push_back(method_->kept(mu, result));
   return std::move(static_cast<HfSolution &>(result));
 }

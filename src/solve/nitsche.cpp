@@ -2,6 +2,7 @@
 
 #include "contact_method.hpp"
 #include "nitsche_system.hpp"
+#include "rbvi/contact/force_balance.hpp"
 #include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
@@ -65,6 +66,7 @@ MethodResult ByNitsche::solve(const ContactTask &task) {
   result.lambda = nitsche_multiplier(layer, op.mu, found.layer);
   nitsche_outputs(layer, op.mu, nitsche_faces(layer, op.mu, layer.cells, found.layer), found.layer,
                   found.pressures, found.bounds, result.outputs);
+  check_forces(layer, op.mu, found.layer);
   result.kkt.stationarity = found.residual;
   result.outputs.energy =
       image_count(problem_.scene().mirrors) * (found.energy + op.imposed_energy);

@@ -11,6 +11,7 @@
 #include "rbvi/model/self_check.hpp"
 #include "rbvi/model/training_samples.hpp"
 #include "rbvi/mor/fields.hpp"
+#include "rbvi/mor/reduced_balance.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/contact_cost.hpp"
 #include "rbvi/sweep/grouping.hpp"
@@ -241,6 +242,7 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const OfflineOption
   ReducedModel model;
   if (kept) {
     model = *std::move(kept);
+    compare_balance(problem, model);
   } else {
     Reduction made = reduce(problem, sweep.samples, options.reduce);
     model = finished_model(made, options, sweep, before);
@@ -297,6 +299,7 @@ void command_offline(const OfflineOptions &options) {
     print_self_check(std::cout, run.model.made.self_check, run.model.scene.parameters);
     tell_of_errors(run.model, options.out);
     print_several_answers(std::cout, run.model);
+    warn_of_balance(std::cout, run.model);
     tell_of_samples(options.scene, contact_of(run.model, options.scene), run.sweep.samples,
                     std::cout);
     warn_of_edges(options.scene, options.mesh.file, std::cout);

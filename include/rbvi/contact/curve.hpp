@@ -120,6 +120,9 @@ std::size_t count_pieces(const InterfaceMesh &mesh);
 /// With the circular arcs through the ends and the middles of edges of degree 2, where a middle is
 /// off its edge (move_middles): Facing::on_curve.
 Facing on_arcs(Facing facing, const InterfaceMesh &mesh);
+/// Throws bad_input where the normal that a facing has of the body's boundary is off that of an
+/// edge by more than it turns along the edge.
+void check_body_normal(const Scene &scene, const Facing &facing, const InterfaceMesh &mesh);
 
 /// Gram matrix in L2 of the hat functions of the polygon through `points`, `copies` blocks; of a
 /// body that is turned in L2 of the surface that it makes.

@@ -1,16 +1,16 @@
 // The forces of contact added up on two roads, for each side of each interface, on the rigid
-// motions of the plane (two translations, a turn about the origin of the mapped mesh): as outputs
-// know them, by the normals and pressures at points, and as the solver does, lambda^T B on the
-// motion.
+// motions of the plane (two translations, a turn about the origin of the mapped mesh), of a
+// membrane on the constant: as outputs know them, by the normals and pressures at points, and as
+// the solver does, lambda^T B on the motion, or Nitsche's terms on the translations.
 //
-// What a solver has solved balances loads and reactions with lambda^T B by construction (Galerkin:
-// rigid motions of a body that nothing holds are in its space, and the residual says how well), and
-// so this comparison is all that is left of a balance of the body. It sees a normal, a weight, a
-// point or a side that one road has and the other has not. It does not see a normal that both ask
-// the same wrong function for, nor a gap: they leave forces in balance.
+// It sees a normal, a weight, a point or a side that one road has and the other has not. It does
+// not see a gap, which leaves forces in balance, nor a normal that both ask the same wrong function
+// for: a normal of the body is compared with that of its edges (check_body_normal). With loads,
+// reactions and springs: fem/body_balance.hpp.
 #pragma once
 
 #include "rbvi/contact/contact.hpp"
+#include "rbvi/contact/nitsche_curve.hpp"
 
 namespace rbvi {
 
@@ -29,14 +29,20 @@ struct TwoRoads {
 
 /// Of each side of an interface; none where outputs are no sums over points. `solved`: B^T lambda
 /// at the columns as the solver has it; empty: B evaluated anew.
-std::vector<TwoRoads> two_roads(const Scene &scene, const ContactInterface &interface,
-                                const FullMu &mu, const ContactState &state, const Vector &lambda,
+std::vector<TwoRoads> two_roads(const Scene &scene, ContactInterface &interface, const FullMu &mu,
+                                const ContactState &state, const Vector &lambda,
                                 const Vector &solved = {});
+/// What Nitsche's terms test translations with; `by_points` is left zero.
+TwoRoads two_roads(const std::vector<NitscheFace> &faces, const Matrix &pressures,
+                   const Vector &bounds);
 
 /// Throws failure, naming contact and boundary, where the roads differ by more than `tolerance` of
 /// the sizes. `b`: of the solver, all rows; null: evaluated anew.
 void check_forces(const Scene &scene, const Contact &contact, const FullMu &mu,
                   const ContactState &state, const Vector &lambda, const SparseMatrix *b,
+                  double tolerance = 1e-10);
+/// The same by Nitsche's method, at a displacement of the layer.
+void check_forces(const NitscheLayer &layer, const FullMu &mu, const Vector &u,
                   double tolerance = 1e-10);
 
 } // namespace rbvi

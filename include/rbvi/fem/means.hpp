@@ -3,7 +3,16 @@
 
 #include "rbvi/fem/dofs.hpp"
 
+#include <algorithm>
+
 namespace rbvi {
+
+/// Whether both are the same spring, or a spring and its pretension.
+inline bool are_same(const std::vector<Mean> &some, const std::vector<Mean> &others) {
+  return std::ranges::equal(some, others, [](const Mean &one, const Mean &other) {
+    return one.boundary == other.boundary && one.direction == other.direction;
+  });
+}
 
 /// The sum of some means by local node * components + component, fixed dofs included: what the
 /// facets of this rank give of it. Collective.

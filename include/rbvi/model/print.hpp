@@ -22,6 +22,10 @@ void print_written(std::ostream &out, const std::vector<std::filesystem::path> &
 /// A line where the law of the model has several answers (has_several_answers).
 void print_several_answers(std::ostream &out, const ReducedModel &model);
 
+/// A line where reactions are not in balance with the other forces on their bodies
+/// (mor/reduced_balance.hpp).
+void warn_of_balance(std::ostream &out, const ReducedModel &model);
+
 /// A line where so many of `all` answers are not the only ones to the law of friction.
 void warn_of_other_answers(std::ostream &out, long not_alone, long all);
 
