@@ -68,6 +68,11 @@ double length_of(const std::array<Point, 4> &vertices, int edge) {
   return edge_length(vertices[i], vertices[j]);
 }
 
+/// Of a law that jumps: what it jumps to.
+double highest(const NitscheLaw &law) {
+  return law->piece(0).offset;
+}
+
 } // namespace
 
 CurveCellAtMu curve_cell_at(const NitscheLayer &layer, const FullMu &mu, const CurveCell &beside) {
@@ -115,9 +120,7 @@ void turn_to(const NitscheLayer &layer, const FullMu &mu, const Vector &state,
 }
 
 NitscheLaw NitscheCurve::law_at(const FullMu &mu) const {
-  if (!friction()) return {};
-  const FrictionBound bound = friction_bound(law, mu); // of one law
-  return {law.law, bound.coefficient + bound.threshold, bound.only_in_contact};
+  return friction() ? NitscheLaw(friction_bound(law, mu)) : std::nullopt;
 }
 
 bool NitscheLayer::friction() const {
@@ -143,9 +146,9 @@ Matrix nitsche_pressures(const std::vector<NitscheFace> &faces, const Vector &u)
 }
 
 double nitsche_bound(const NitscheLaw &law, double p_n) {
-  if (law.law == FrictionLaw::none) return -1;
-  if (law.law == FrictionLaw::coulomb) return coulomb_bound(p_n, law.value);
-  return law.only_in_contact ? std::min(law.value, coulomb_bound(p_n, steepest)) : law.value;
+  if (!law) return -1;
+  const double pressure = std::max(0.0, -p_n), bound = law->value(pressure);
+  return law->jumps() ? std::min(bound, steepest * pressure) : bound;
 }
 
 Vector FollowingBounds::next(std::span<const NitscheLaw> laws, const Matrix &pressures,
@@ -156,9 +159,9 @@ Vector FollowingBounds::next(std::span<const NitscheLaw> laws, const Matrix &pre
   for (Index i = 0; i < bounds.size(); ++i) {
     const NitscheLaw &law = laws[static_cast<std::size_t>(i)];
     result[i] = nitsche_bound(law, pressures(i, 0));
-    if (law.law != FrictionLaw::tresca || !law.only_in_contact) continue;
+    if (!law || !law->jumps()) continue;
     excess[i] = pressures(i, 0) + bounds[i] / steepest;
-    const bool inside = bounds[i] > 0 && bounds[i] < law.value;
+    const bool inside = bounds[i] > 0 && bounds[i] < highest(law);
     if (!first && (inside || excess[i] * excess_[i] < 0)) between.push_back(i);
   }
   if (between != between_) { // each by its own change
@@ -166,7 +169,7 @@ Vector FollowingBounds::next(std::span<const NitscheLaw> laws, const Matrix &pre
     for (Index k = 0; k < slopes_.rows(); ++k) {
       const Index i = between[k];
       const double slope = (excess[i] - excess_[i]) / (bounds[i] - bounds_[i]);
-      slopes_(k, k) = slope > 0 ? slope : std::abs(excess[i]) / laws[i].value;
+      slopes_(k, k) = slope > 0 ? slope : std::abs(excess[i]) / highest(laws[i]);
     }
     between_ = between;
   } else if (!between.empty()) { // Broyden's
@@ -178,7 +181,7 @@ Vector FollowingBounds::next(std::span<const NitscheLaw> laws, const Matrix &pre
   if (!between.empty()) step = lu_solve(slopes_, -Vector(excess(between)));
   for (Index k = 0; k < step.size(); ++k)
     if (const Index i = between[k]; std::isfinite(step[k]))
-      result[i] = std::clamp(bounds[i] + step[k], 0.0, laws[i].value);
+      result[i] = std::clamp(bounds[i] + step[k], 0.0, highest(laws[i]));
   bounds_ = bounds;
   excess_ = std::move(excess);
   return result;
@@ -221,7 +224,7 @@ NitscheTerms terms_of(std::span<const NitscheFace> faces) {
     terms.gamma[i] = face.gamma;
     terms.turning[i] = point.weight * point.turning;
     terms.laws.push_back(face.law);
-    terms.friction = terms.friction || face.law.law != FrictionLaw::none;
+    terms.friction = terms.friction || face.law;
   }
   return terms;
 }
@@ -235,7 +238,7 @@ std::vector<NitscheLaw> laws_at_points(std::span<const NitscheFace> faces) {
 }
 
 bool bounds_move(const std::vector<NitscheFace> &faces) {
-  return std::ranges::any_of(faces, [](const NitscheFace &face) { return face.law.moves(); });
+  return std::ranges::any_of(faces, [](const NitscheFace &face) { return moves(face.law); });
 }
 
 std::vector<FaceBlock> nitsche_consistency(const std::vector<NitscheFace> &faces) {

@@ -59,7 +59,7 @@ struct LawErrors {
     const auto square = [&](const Vector &of) { return fields.images.dot(of.cwiseAbs2()); };
     normal += square(fields.sigma_n - fields.p_n.cwiseMin(0));
     sigma_n += square(fields.sigma_n);
-    if (law.law == FrictionLaw::none) return;
+    if (!law) return;
     const Vector bounds = bounds_at(fields, law);
     friction = true;
     tangential += square(fields.sigma_tau - fields.p_tau.cwiseMax(-bounds).cwiseMin(bounds));
@@ -103,7 +103,7 @@ void nitsche_outputs(std::span<const NitscheFace> faces, const Matrix &pressures
   LawErrors errors;
   errors.add(fields, law);
   errors.set(outputs);
-  if (law.law == FrictionLaw::none) return;
+  if (!law) return;
 
   const Vector bounds = bounds_at(fields, law);
   outputs.tangential_force = sums.tangential;

@@ -45,9 +45,8 @@ public:
 
   FrictionResult run(const Vector &start, bool by_rule) {
     const Vector from = order_.inwards(start);
-    const double coefficient = largest(laws_.nodes > 0 ? laws_.coefficient.maxCoeff() : 0);
-    return by_rule && coefficient > 0 ? continued(from, Laws::steps_to(coefficient))
-                                      : iterate(from);
+    const double steepest = largest(laws_.steepest());
+    return by_rule && steepest > 0 ? continued(from, Laws::steps_to(steepest)) : iterate(from);
   }
 
 private:
@@ -55,7 +54,7 @@ private:
   FrictionResult continued(Vector from, int steps) {
     const Laws all = laws_;
     for (int k = 0; k < steps; ++k) {
-      laws_ = all.with_part(static_cast<double>(k) / steps);
+      laws_ = all.with_slopes(static_cast<double>(k) / steps);
       const FrictionResult found = iterate(from);
       if (!found.converged) break;
       from = order_.inwards(found.start);

@@ -79,8 +79,8 @@ Vector unbalanced_load(const NodeLaws &laws, const Matrix &held, const Vector &l
     for (Index t = 0; t < laws.tangents; ++t)
       for (const double sign : {-1.0, 1.0}) {
         const Vector traction = sign * held.row(laws.tangent[node] + t).transpose();
-        rays.push_back(bound.threshold > 0 ? traction
-                                           : Vector(normal + bound.coefficient * traction));
+        const auto [offset, slope] = bound.piece(0);
+        rays.push_back(offset > 0 ? traction : Vector(normal + slope * traction));
       }
   }
   Matrix columns(load.size(), std::ssize(rays));
@@ -98,7 +98,7 @@ Vector forces_on_motions(const NodeLaws &laws, const Matrix &held, const Vector 
   for (Index node = 0; node < laws.nodes(); ++node)
     for (Index t = 0; laws.has_tangent(node) && t < laws.tangents; ++t) {
       double &size = sizes[laws.tangent[node] + t];
-      size = std::max(size, laws.bound[node].coefficient * std::abs(x[laws.normal[node]]));
+      size = std::max(size, laws.bound[node].steepest() * std::abs(x[laws.normal[node]]));
     }
   return terms + held.cwiseAbs().transpose() * sizes;
 }

@@ -128,6 +128,7 @@ private:
       for (Index j = 0; j < p_.nodes(); ++j)
         closed[j] = s[j] == 0;
       const State point = judged(without(closed).frozen(s, sets));
+      set_pieces(point.x, sets);
       if (best_.residual <= round_off) return;
       const bool known = policy_.returns(sets);
       if (!known && newton(sets)) return;
@@ -169,7 +170,7 @@ private:
   std::vector<char> zero_bounds(const ActiveSets &sets) const {
     std::vector<char> closed(p_.nodes());
     for (Index j = 0; j < p_.nodes(); ++j) {
-      closed[j] = p_.bound[j].threshold_at(0) == 0;
+      closed[j] = p_.bound[j].value(0) == 0;
       for (Index i = 0; i < p_.generators() && p_.bound[j].carries_traction(true); ++i)
         if (sets.free[i] != 0 && p_.normal(j, i) > 0) closed[j] = 0;
     }
@@ -198,7 +199,20 @@ private:
         side = traction > 0 ? 1 : -1;
       }
     }
+    set_pieces(point.x, sets);
     return sets;
+  }
+
+  /// At a kink of a law, where two pieces are, the piece stays.
+  void set_pieces(const Vector &x, ActiveSets &sets) const {
+    const Vector pressures = p_.pressures(x);
+    for (Index j = 0; j < p_.nodes(); ++j) {
+      const FrictionBound &law = p_.bound[j];
+      const auto [offset, slope] = law.piece(sets.piece[j]);
+      const double p = pressures[j], s = law.value(p);
+      if (sets.side[j] == 0 || !(std::abs(offset + slope * p - s) <= accuracy * s))
+        sets.piece[j] = static_cast<signed char>(sets.side[j] == 0 ? 0 : law.piece_at(p));
+    }
   }
 
   ActiveSets sets_at(const Vector &x) const {
@@ -211,6 +225,7 @@ private:
     for (Index j = 0; j < p_.nodes(); ++j)
       if (s[j] > 0 && std::abs(traction[j]) >= s[j] * (1 - near))
         sets.side[j] = traction[j] > 0 ? 1 : -1;
+    set_pieces(x, sets);
     return sets;
   }
 

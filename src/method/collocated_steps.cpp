@@ -13,7 +13,8 @@ std::vector<Index> rows_above(const Vector &norms, double least) {
 
 /// Newton's step on given sets: the bounds follow the pressure,
 ///
-///   w_free = 0,   w_tau + T^T delta = 0,   side_j (T b)_j - c (N a)_j = t at the nodes at a bound.
+///   w_free = 0,   w_tau + T^T delta = 0,   side_j (T b)_j - slope (N a)_j = offset of its piece at
+///   the nodes at a bound.
 State newton_step(const ScaledProblem &p, const ActiveSets &sets) {
   std::vector<Index> unknowns, held;
   for (Index i = 0; i < p.generators(); ++i)
@@ -32,15 +33,16 @@ State newton_step(const ScaledProblem &p, const ActiveSets &sets) {
   for (Index k = 0; k < m; ++k) {
     const Index j = held[k];
     const double side = sets.side[j], size = p.size[j];
+    const auto [offset, slope] = p.bound[j].piece(sets.piece[j]);
     double reach = 0; // largest entry of the free generators: in contact by these sets
     for (Index i = 0; i < pressures; ++i) {
       const double value = p.normal(j, unknowns[i]);
-      system(n + k, i) = -p.bound[j].coefficient * value / size;
+      system(n + k, i) = -slope * value / size;
       reach = std::max(reach, value);
     }
     system.row(n + k).segment(pressures, p.modes()) = side / size * p.tangential.row(j);
     system.col(n + k).segment(pressures, p.modes()) = side / size * p.tangential.row(j).transpose();
-    right[n + k] = p.bound[j].threshold_at(reach) / size;
+    right[n + k] = reach > 0 || !p.bound[j].jumps() ? offset / size : 0;
   }
   Vector solution(n + m);
   if (n + m > 0) {
@@ -194,8 +196,10 @@ State ZeroBoundElimination::frozen(const Vector &s, ActiveSets &sets) {
 ActiveSets ZeroBoundElimination::restricted(const ActiveSets &sets) const {
   ActiveSets result(reduced_);
   result.free = sets.free;
-  for (std::size_t k = 0; k < nodes_.size(); ++k)
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
     result.side[k] = sets.side[nodes_[k]];
+    result.piece[k] = sets.piece[nodes_[k]];
+  }
   return result;
 }
 

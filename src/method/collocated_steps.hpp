@@ -36,22 +36,24 @@ struct ScaledProblem {
   Index generators() const { return normal.cols(); }
   Index modes() const { return tangential.cols(); }
 
-  /// s = c N a + t
+  Vector pressures(const Vector &x) const { return normal * x.head(generators()); }
+  /// s at N a
   Vector bounds(const Vector &x) const {
-    const Vector p = normal * x.head(generators());
+    const Vector p = pressures(x);
     return Vector::NullaryExpr(nodes(), [&](Index j) { return bound[j].value(p[j]); });
   }
 };
 
 ScaledProblem scaled(const CollocatedProblem &problem);
 
-/// Which generators may carry pressure, and which nodes are at their bound: -1, 0 or 1, the sign
-/// of T b.
+/// Which generators may carry pressure; which nodes are at their bound: -1, 0 or 1, the sign of
+/// T b; and on which piece of their laws those are.
 struct ActiveSets {
   std::vector<char> free;
-  std::vector<signed char> side;
+  std::vector<signed char> side, piece;
 
-  explicit ActiveSets(const ScaledProblem &p) : free(p.generators(), 1), side(p.nodes(), 0) {}
+  explicit ActiveSets(const ScaledProblem &p)
+      : free(p.generators(), 1), side(p.nodes(), 0), piece(p.nodes(), 0) {}
   friend auto operator<=>(const ActiveSets &, const ActiveSets &) = default;
 };
 

@@ -69,8 +69,8 @@ public:
     if (outcome == Outcome::cycles && searches) outcome = Outcome::known;
     if (outcome == Outcome::cycles) {
       State point = evaluate(h_, q_, laws_.feasible(best_.x));
-      outcome = laws_.jump() && laws_.coefficient.isZero(0) ? settle_contact(std::move(point))
-                                                            : backup(std::move(point));
+      outcome = laws_.jump() && laws_.steepest() == 0 ? settle_contact(std::move(point))
+                                                      : backup(std::move(point));
     }
     kept_.known.merge(visited_);
     return outcome == Outcome::known ? FrictionAnswer() : finish(outcome);
@@ -91,12 +91,12 @@ private:
     if (normal.x.size() == laws_.nodes) x.head(laws_.nodes) = normal.x;
     prepare(laws_, x);
     State point = evaluate(h_, q_, std::move(x));
-    const bool comes_down = laws_.coefficient.isZero(0);
-    const int steps = comes_down ? halvings : Laws::steps_to(laws_.coefficient.maxCoeff());
+    const bool comes_down = laws_.steepest() == 0;
+    const int steps = comes_down ? halvings : Laws::steps_to(laws_.steepest());
     for (int k = 1; k < steps; ++k) {
       State next = point;
       const Laws part = comes_down ? laws_.with_thresholds(std::ldexp(1.0, steps - k))
-                                   : laws_.with_part(static_cast<double>(k) / steps);
+                                   : laws_.with_slopes(static_cast<double>(k) / steps);
       if (newton(part, next) != Outcome::converged) break;
       point = std::move(next);
     }
@@ -185,14 +185,11 @@ private:
   Outcome backup(State point) {
     double near = 0.5, part = 1;
     Vector before;
-    Laws frozen = laws_;
-    frozen.coefficient.setZero();
-    frozen.only_in_contact.assign(laws_.nodes, 0);
-    frozen.threshold = laws_.bounds(point.x);
+    Vector held = laws_.bounds(point.x);
     while (systems_left_ > 0 && result_.backup_steps < options_.max_iterations) {
       ++result_.backup_steps;
-      if (!solve_frozen(frozen, 1e-2 * near, point)) return Outcome::indefinite;
-      const Vector bounds = laws_.bounds(point.x), change = bounds - frozen.threshold;
+      if (!solve_frozen(laws_.frozen(held), 1e-2 * near, point)) return Outcome::indefinite;
+      const Vector bounds = laws_.bounds(point.x), change = bounds - held;
       if (change.cwiseAbs().maxCoeff() <= near * bounds.maxCoeff()) {
         near *= 0.1;
         State trial = evaluate(h_, q_, laws_.feasible(point.x));
@@ -202,8 +199,8 @@ private:
       const bool turns = before.size() > 0 && change.dot(before) < 0;
       part = turns ? std::max(0.1, 0.5 * part) : std::min(1.0, 2 * part);
       before = change;
-      frozen.threshold += part * change;
-      point = evaluate(h_, q_, frozen.feasible(std::move(point.x)));
+      held += part * change;
+      point = evaluate(h_, q_, laws_.frozen(held).feasible(std::move(point.x)));
     }
     return Outcome::limit;
   }
@@ -214,10 +211,8 @@ private:
     std::vector<std::vector<char>> seen{contact_sets(laws_, point.x).active};
     while (systems_left_ > 0) {
       ++result_.backup_steps;
-      Laws frozen = laws_;
-      frozen.only_in_contact.assign(laws_.nodes, 0);
-      for (Index i = 0; i < laws_.nodes; ++i)
-        frozen.threshold[i] = laws_.at_node(i).threshold_at(seen.back()[i]);
+      const Laws frozen = laws_.frozen(Vector::NullaryExpr(
+          laws_.nodes, [&](Index i) { return laws_.bound(i, seen.back()[i]); }));
       point = evaluate(h_, q_, frozen.feasible(std::move(point.x)));
       if (!solve_frozen(frozen, options_.tolerance, point)) return Outcome::indefinite;
       const std::vector<char> touching = contact_sets(laws_, point.x).active;

@@ -22,14 +22,15 @@ void sweep(const LazyColumns &h, const Laws &frozen, State &point) {
       if (change != 0) point.w += change * h.column(i);
     }
     const Index t = frozen.tangent(i);
-    if (frozen.threshold[i] == 0 || !h.has(t)) continue;
+    const double bound = frozen.bound(i, 0);
+    if (bound == 0 || !h.has(t)) continue;
     double curvature = 0;
     for (Index k = 0; k < count; ++k)
       curvature += h.diagonal()[t + k];
     const Vector old = point.x.segment(t, count);
     Vector next = old - point.w.segment(t, count) / curvature;
     const double size = next.norm();
-    if (size > frozen.threshold[i]) next *= frozen.threshold[i] / size;
+    if (size > bound) next *= bound / size;
     point.x.segment(t, count) = next;
     for (Index k = 0; k < count; ++k)
       if (next[k] != old[k]) point.w += (next[k] - old[k]) * h.column(t + k);
@@ -43,7 +44,7 @@ ActiveSets held_sets(const Vector &diagonal, const Laws &frozen, const State &po
   const Index count = frozen.dim - 1;
   for (Index i = 0; i < frozen.nodes; ++i) {
     sets.active[i] = point.x[i] > 0 || point.w[i] < 0;
-    const double bound = frozen.threshold[i];
+    const double bound = frozen.bound(i, 0);
     if (bound == 0) continue;
     const auto x = point.x.segment(frozen.tangent(i), count);
     const bool presses = x.dot(point.w.segment(frozen.tangent(i), count)) <= 0;
@@ -68,7 +69,7 @@ std::vector<Stop> stops_along(const Laws &frozen, const Vector &x, const Vector 
     if (d[i] < 0) stops.push_back({-x[i] / d[i], i, 1});
     const Index t = frozen.tangent(i);
     const auto from = x.segment(t, count), way = d.segment(t, count);
-    const double a = way.squaredNorm(), b = from.dot(way), bound = frozen.threshold[i];
+    const double a = way.squaredNorm(), b = from.dot(way), bound = frozen.bound(i, 0);
     if (a == 0) continue;
     const double left = std::max(0.0, bound * bound - from.squaredNorm());
     stops.push_back({(std::sqrt(b * b + a * left) - b) / a, t, count});

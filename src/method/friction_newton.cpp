@@ -45,8 +45,9 @@ private:
     if (!(size <= 0)) verdict_.residual = larger(verdict_.residual, size / scale);
   }
   bool turned(Index i) const {
-    return laws_.dim == 2 && sets_.tangent_at(i) == Tangent::slip &&
-           verdict_.next.direction(0, i) != sets_.direction(0, i);
+    return sets_.tangent_at(i) == Tangent::slip &&
+           ((laws_.dim == 2 && verdict_.next.direction(0, i) != sets_.direction(0, i)) ||
+            verdict_.next.piece[i] != sets_.piece[i]);
   }
   void normal(Index i) {
     const double x = point_.x[i], w = point_.w[i], terms = point_.terms[i];
@@ -68,6 +69,7 @@ private:
     if (known) measure(i, bound);
     if (!laws_.at_node(i).carries_traction(verdict_.next.is_active(i))) return;
     verdict_.next.direction.col(i) = sets_.direction.col(i);
+    verdict_.next.piece[i] = sets_.piece[i];
     if (bound > 0 && known)
       predict(i, bound);
     else if (sets_.tangent_at(i) == Tangent::none)
@@ -87,8 +89,17 @@ private:
   static double dot(const Pair &p, const Pair &q) { return p[0] * q[0] + p[1] * q[1]; }
   void slip(Index i, const Pair &along, double size) {
     verdict_.next.tangent[i] = Tangent::slip;
+    verdict_.next.piece[i] = piece_of(i);
     for (int k = 0; k < laws_.dim - 1; ++k)
       verdict_.next.direction(k, i) = along[k] / size;
+  }
+  /// The piece of the law at x_n; at a kink, where two are, that of the sets.
+  char piece_of(Index i) const {
+    const FrictionBound &law = laws_.at_node(i);
+    const double x = point_.x[i], s = law.value(x);
+    const auto [offset, slope] = sets_.piece_of(laws_, i);
+    const bool stays = std::abs(offset + slope * x - s) <= tolerance_ * s;
+    return stays ? sets_.piece[i] : static_cast<char>(law.piece_at(x));
   }
   /// The bound of a node that just came into contact was zero: it slips against its w_tau.
   void begin(Index i) {
@@ -143,7 +154,7 @@ private:
 
 ActiveSets::ActiveSets(Index nodes, int dim)
     : active(nodes, 0), tangent(nodes, Tangent::none), direction(Matrix::Zero(dim - 1, nodes)),
-      curvature(Vector::Constant(nodes, -1)) {}
+      piece(nodes, 0), curvature(Vector::Constant(nodes, -1)) {}
 
 std::vector<Index> ActiveSets::support(const Laws &laws) const {
   std::vector<Index> result;
@@ -161,8 +172,8 @@ std::string ActiveSets::key() const {
   result.reserve(active.size());
   for (std::size_t i = 0; i < active.size(); ++i) {
     const bool slips = tangent[i] == Tangent::slip;
-    const int backwards = slips && direction(0, static_cast<Index>(i)) < 0 ? 8 : 0;
-    result.push_back(static_cast<char>(active[i] + 2 * static_cast<int>(tangent[i]) + backwards));
+    const int way = slips ? 8 * (direction(0, static_cast<Index>(i)) < 0) + 16 * piece[i] : 0;
+    result.push_back(static_cast<char>(active[i] + 2 * static_cast<int>(tangent[i]) + way));
   }
   return result;
 }
@@ -193,7 +204,9 @@ ActiveSets predicted_sets(const Laws &laws, const Vector &y) {
     const double size = tangential.norm();
     const bool slips = size > 0 && size >= (1 - round_off) * laws.bound(i, y[i]);
     result.tangent[i] = slips ? Tangent::slip : Tangent::stick;
-    if (slips) result.direction.col(i) = tangential / size;
+    if (!slips) continue;
+    result.direction.col(i) = tangential / size;
+    result.piece[i] = static_cast<char>(laws.at_node(i).piece_at(y[i]));
   }
   return result;
 }
@@ -216,7 +229,7 @@ std::vector<Unknown> unknowns(const Laws &laws, const ActiveSets &sets) {
     const bool slips = sets.tangent_at(i) == Tangent::slip;
     if (sets.is_active(i)) {
       result.push_back({.node = i, .first = i, .second = i});
-      if (slips) result.back().slope = laws.coefficient[i];
+      if (slips) result.back().slope = sets.piece_of(laws, i).slope;
     }
     if (sets.tangent_at(i) == Tangent::none) continue;
     for (Index k = 0; k < laws.dim - 1 && !slips; ++k)
@@ -236,7 +249,8 @@ Vector fixed_part(const Laws &laws, const ActiveSets &sets) {
   Vector x = Vector::Zero(laws.nodes * laws.dim);
   for (Index i = 0; i < laws.nodes; ++i)
     if (sets.tangent_at(i) == Tangent::slip)
-      x.segment(laws.tangent(i), laws.dim - 1) = laws.threshold[i] * sets.direction.col(i);
+      x.segment(laws.tangent(i), laws.dim - 1) =
+          sets.piece_of(laws, i).offset * sets.direction.col(i);
   return x;
 }
 

@@ -1,10 +1,10 @@
 // One Newton step for contact with friction, and what a vector x says about the laws.
 //
-// A node that slips has x_tau = s e, |e| = 1, s = c x_n + t: in two dimensions e is a sign and
-// x_tau is eliminated; in three the turn z of e is an unknown, x_tau = s e + z e', e' orthogonal to
-// e, with the row  e' . w_tau + kappa z = 0,  kappa = (|y| - s) / (rho s),  y = x_tau - rho w_tau:
-// that is the derivative of the projection on the disk, and kappa >= 0. After the step x_tau is
-// brought back to the circle.
+// A node that slips has x_tau = s e, |e| = 1, s = c x_n + t on its piece of the law: in two
+// dimensions e is a sign and x_tau is eliminated; in three the turn z of e is an unknown, x_tau = s
+// e + z e', e' orthogonal to e, with the row  e' . w_tau + kappa z = 0,  kappa = (|y| - s) / (rho
+// s),  y = x_tau - rho w_tau: that is the derivative of the projection on the disk, and kappa >= 0.
+// After the step x_tau is brought back to the circle.
 #pragma once
 
 #include "lazy_columns.hpp"
@@ -14,28 +14,27 @@
 
 namespace rbvi::friction {
 
-/// |x_tau,i| <= c_i x_n,i + t_i. Entries of x: x_n of all nodes, then x_tau of all nodes.
+/// |x_tau,i| <= s_i(x_n,i). Entries of x: x_n of all nodes, then x_tau of all nodes.
 struct Laws {
   Index nodes = 0;
   int dim = 2;
-  Vector coefficient, threshold; ///< c and t of every node
-  std::vector<char> only_in_contact;
+  std::vector<FrictionBound> of; ///< every node
 
   Index tangent(Index i) const { return nodes + i * (dim - 1); }
-  FrictionBound at_node(Index i) const {
-    return {coefficient[i], threshold[i], only_in_contact[i] != 0};
-  }
-  double bound(Index i, double normal) const { return at_node(i).value(normal); }
+  const FrictionBound &at_node(Index i) const { return of[i]; }
+  double bound(Index i, double normal) const { return of[i].value(normal); }
   Vector bounds(const Vector &x) const;
-  bool jump() const; ///< at some node
-  bool follow_pressure() const { return (coefficient.array() > 0).any() || jump(); }
+  bool jump() const;            ///< at some node
+  bool follow_pressure() const; ///< at some node
+  double steepest() const;      ///< of all nodes
   /// The nearest x that keeps the signs, and then the bounds.
   Vector feasible(Vector x) const;
-  /// Steps in which coefficients grow from zero, by at most 0.25 each, to `largest` of them all.
-  static int steps_to(double largest);
-  /// With this part of the coefficients.
-  Laws with_part(double part) const;
-  Laws with_thresholds(double factor) const; ///< so many times as large
+  /// Steps in which slopes grow from zero, by at most 0.25 each, to `steepest` of them all.
+  static int steps_to(double steepest);
+  Laws with_slopes(double part) const;
+  Laws with_thresholds(double factor) const;
+  /// With bounds that do not follow the pressure.
+  Laws frozen(const Vector &bounds) const;
 };
 
 /// The kind of x_tau at a node: zero, free, or of a given direction.
@@ -46,12 +45,17 @@ enum class Tangent : char { none, stick, slip };
 struct ActiveSets {
   std::vector<char> active;
   std::vector<Tangent> tangent;
-  Matrix direction; ///< e of the nodes that slip, dim - 1 x nodes
-  Vector curvature; ///< kappa of those nodes; negative: no turn
+  Matrix direction;        ///< e of the nodes that slip, dim - 1 x nodes
+  std::vector<char> piece; ///< of their laws
+  Vector curvature;        ///< kappa of those nodes; negative: no turn
 
   ActiveSets(Index nodes, int dim);
   bool is_active(Index i) const { return active[i] != 0; }
   Tangent tangent_at(Index i) const { return tangent[i]; }
+  /// Of a node that slips.
+  FrictionBound::Piece piece_of(const Laws &laws, Index i) const {
+    return laws.at_node(i).piece(piece[i]);
+  }
   /// The entries of x that need not be zero.
   std::vector<Index> support(const Laws &laws) const;
   /// Equal for sets with the same linear system, in two dimensions.
@@ -98,7 +102,7 @@ struct Unknown {
   double curvature = 0; ///< on the diagonal
 };
 std::vector<Unknown> unknowns(const Laws &laws, const ActiveSets &sets);
-/// The part of x that no unknown changes: the thresholds of the nodes that slip.
+/// The part of x that no unknown changes: what bounds of slipping nodes have at x_n = 0.
 Vector fixed_part(const Laws &laws, const ActiveSets &sets);
 /// x of the unknowns u, beside its fixed part `x`; slipping nodes on their circle.
 Vector expand(const Laws &laws, const ActiveSets &sets, const std::vector<Unknown> &list,

@@ -40,7 +40,7 @@ bool NodeLaws::has_tangents() const {
 
 bool NodeLaws::friction() const {
   for (Index i = 0; i < nodes(); ++i)
-    if (has_tangent(i) && (bound[i].coefficient > 0 || bound[i].threshold > 0)) return true;
+    if (has_tangent(i) && bound[i].acts()) return true;
   return false;
 }
 

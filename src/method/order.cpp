@@ -46,17 +46,9 @@ ColumnSource Order::inwards(const ColumnSource &columns) const {
 
 Laws laws_of(const NodeLaws &of) {
   const Index nodes = of.nodes();
-  Laws laws{.nodes = nodes,
-            .dim = of.has_tangents() ? 1 + of.tangents : 1,
-            .coefficient = Vector(nodes),
-            .threshold = Vector(nodes),
-            .only_in_contact = std::vector<char>(nodes)};
-  for (Index i = 0; i < nodes; ++i) {
-    const FrictionBound bound = of.has_tangent(i) ? of.bound[i] : FrictionBound{};
-    laws.coefficient[i] = bound.coefficient;
-    laws.threshold[i] = bound.threshold;
-    laws.only_in_contact[i] = bound.only_in_contact;
-  }
+  Laws laws{.nodes = nodes, .dim = of.has_tangents() ? 1 + of.tangents : 1, .of = of.bound};
+  for (Index i = 0; i < nodes; ++i)
+    if (!of.has_tangent(i)) laws.of[i] = {};
   return laws;
 }
 
@@ -96,25 +88,43 @@ Vector Laws::feasible(Vector x) const {
 }
 
 bool Laws::jump() const {
-  for (Index i = 0; i < nodes; ++i)
-    if (at_node(i).jumps()) return true;
-  return false;
+  return std::ranges::any_of(of, &FrictionBound::jumps);
 }
 
-int Laws::steps_to(double largest) {
+bool Laws::follow_pressure() const {
+  return std::ranges::any_of(of, &FrictionBound::follows_pressure);
+}
+
+double Laws::steepest() const {
+  double result = 0;
+  for (const FrictionBound &law : of)
+    result = std::max(result, law.steepest());
+  return result;
+}
+
+int Laws::steps_to(double steepest) {
   constexpr double longest = 0.25;
-  return std::max(1, static_cast<int>(std::ceil(largest / longest)));
+  return std::max(1, static_cast<int>(std::ceil(steepest / longest)));
 }
 
-Laws Laws::with_part(double part) const {
+Laws Laws::with_slopes(double part) const {
   Laws result = *this;
-  result.coefficient *= part;
+  for (FrictionBound &law : result.of)
+    law = law.with_slopes(part);
   return result;
 }
 
 Laws Laws::with_thresholds(double factor) const {
   Laws result = *this;
-  result.threshold *= factor;
+  for (FrictionBound &law : result.of)
+    law = law.with_threshold(factor);
+  return result;
+}
+
+Laws Laws::frozen(const Vector &bounds) const {
+  Laws result = *this;
+  for (Index i = 0; i < nodes; ++i)
+    result.of[i] = {.threshold = bounds[i]};
   return result;
 }
 

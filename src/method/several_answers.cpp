@@ -7,9 +7,7 @@ namespace rbvi {
 
 bool bounds_follow_pressure(const NodeLaws &laws) {
   for (Index i = 0; i < laws.nodes(); ++i)
-    if (const FrictionBound &bound = laws.bound[i];
-        laws.has_tangent(i) && (bound.coefficient > 0 || bound.jumps()))
-      return true;
+    if (laws.has_tangent(i) && laws.bound[i].follows_pressure()) return true;
   return false;
 }
 

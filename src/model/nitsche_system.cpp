@@ -221,12 +221,11 @@ std::optional<int> ReducedNitsche::System::follow_bound() {
     std::vector<Index> slipping; // there the bound moves with P_n
     std::vector<double> rates;
     for (Index i = 0; i < points; ++i) {
-      const NitscheLaw &law = terms.laws[i];
-      const double shear = pressures(i, 1);
-      if (law.law != FrictionLaw::coulomb || !(std::abs(shear) > bounds[i]) || pressures(i, 0) >= 0)
-        continue;
+      const double pressure = -pressures(i, 0), shear = pressures(i, 1);
+      const double slope = terms.laws[i] ? terms.laws[i]->slope_at(pressure) : 0;
+      if (slope == 0 || !(std::abs(shear) > bounds[i]) || pressure <= 0) continue;
       slipping.push_back(i);
-      rates.push_back(-std::copysign(law.value, shear) * terms.weights[i] / terms.gamma[i]);
+      rates.push_back(-std::copysign(slope, shear) * terms.weights[i] / terms.gamma[i]);
     }
     const Vector rate = Eigen::Map<const Vector>(rates.data(), static_cast<Index>(rates.size()));
     const Matrix normal = functionals.leftCols(points)(Eigen::all, slipping);
@@ -246,9 +245,9 @@ std::optional<int> ReducedNitsche::System::follow_bound() {
 
 /// From the last iterate to the answer. Returns the steps.
 int ReducedNitsche::System::settle() {
-  if (std::ranges::none_of(terms.laws, &NitscheLaw::moves)) return minimise();
+  if (std::ranges::none_of(terms.laws, moves)) return minimise();
   int steps = 0;
-  if (std::ranges::any_of(terms.laws, [](auto &law) { return law.law == FrictionLaw::coulomb; })) {
+  if (std::ranges::any_of(terms.laws, [](auto &law) { return law && law->steepest() > 0; })) {
     if (const std::optional<int> more = follow_bound()) return *more;
     steps = most_full_steps;
   }

@@ -78,7 +78,7 @@ TEST(NitscheCurves, TogetherAnswerAsEachByItself) {
 /// Points that touch without friction and lift off with it: at some bound between them pressure and
 /// bound agree. Others touch, or do not, with any bound.
 TEST(NitscheCurves, BoundsThatTurnBackAndForthSettle) {
-  const NitscheLaw law{FrictionLaw::tresca, 0.5, true};
+  const NitscheLaw law = FrictionBound{0, 0.5, true};
   const std::vector<NitscheLaw> laws(4, law);
   const Vector without{{-0.03, -0.02, -2, 1}};
   const Matrix by_bounds{
@@ -93,11 +93,11 @@ TEST(NitscheCurves, BoundsThatTurnBackAndForthSettle) {
     bounds = following.next(laws, pressures, bounds);
   } while ((bounds - before).norm() > 1e-13 && ++loops < 60);
   EXPECT_LE(loops, 15);
-  EXPECT_EQ(bounds[2], law.value);
+  EXPECT_EQ(bounds[2], law->threshold);
   EXPECT_EQ(bounds[3], 0);
   for (const Index i : {0, 1}) {
     EXPECT_GT(bounds[i], 0.01);
-    EXPECT_LT(bounds[i], law.value);
+    EXPECT_LT(bounds[i], law->threshold);
     EXPECT_NEAR(nitsche_bound(law, pressures(i, 0)), bounds[i], 1e-9);
   }
 }

@@ -11,7 +11,7 @@ namespace rbvi::nitsche_outputs_test {
 namespace {
 
 constexpr NitscheLaw frictionless{};
-constexpr NitscheLaw coulomb{FrictionLaw::coulomb, 0.3, false};
+constexpr NitscheLaw coulomb = FrictionBound{0.3, 0, false};
 
 /// Faces of a body above a curve, of degree 1, as far as outputs look at them: weights and
 /// directions.
@@ -109,8 +109,8 @@ TEST(NitscheOutputs, AStraightCurveWithFriction) {
 /// Without contact Tresca's bound acts all the same, but nothing is said to stick.
 TEST(NitscheOutputs, TrescasForceActsBesideTheContact) {
   const Matrix pressures = pressures_of({{3, 5}, {3, 0.1}, {-2, 0.1}, {-2, 5}});
-  const NitscheLaw everywhere{FrictionLaw::tresca, 0.4, false};
-  const NitscheLaw in_contact{FrictionLaw::tresca, 0.4, true};
+  const NitscheLaw everywhere = FrictionBound{0, 0.4, false};
+  const NitscheLaw in_contact = FrictionBound{0, 0.4, true};
   const CurveFields fields = constant_fields(5, 2);
   const Outputs o = outputs_of(straight, pressures, fields, everywhere);
   EXPECT_NEAR(*o.tangential_force, 0.25 * (0.4 + 0.1 + 0.1 + 0.4), 1e-15);

@@ -16,6 +16,7 @@
 #include "rbvi/contact/support_outputs.hpp"
 #include "rbvi/core/outputs.hpp"
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,14 +35,13 @@ struct CurveCell {
   int material = 0;          ///< of the scene's
 };
 
-/// Friction::law with its threshold or coefficient at one mu.
-struct NitscheLaw {
-  FrictionLaw law = FrictionLaw::none;
-  double value = 0;
-  bool only_in_contact = false; ///< Tresca's threshold holds where [P_n]_- < 0 alone
-  /// Whether the bounds depend on u.
-  bool moves() const { return law == FrictionLaw::coulomb || only_in_contact; }
-};
+/// The law of friction at one mu; none without friction.
+using NitscheLaw = std::optional<FrictionBound>;
+
+/// Whether the bounds depend on u.
+inline bool moves(const NitscheLaw &law) {
+  return law && law->follows_pressure();
+}
 
 /// The curve of one interface. gamma = gamma0 (lambda + 2 shear) / h on each edge, h its length in
 /// the reference domain.

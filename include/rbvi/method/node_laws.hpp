@@ -1,5 +1,5 @@
 // The laws of contact and friction as data, node by node: x_n >= 0, and at nodes with friction
-// |x_tau| <= c x_n + t, a ball of d - 1 dimensions. A system can have nodes of both kinds, from
+// |x_tau| <= s(x_n), a ball of d - 1 dimensions. A system can have nodes of both kinds, from
 // interfaces with laws of their own, and rows in any order.
 // Niakh (2022): (3.6), (3.13)-(3.16), (3.20)-(3.23), Remark 3.2.1, Remark 3.2.2.
 #pragma once
@@ -11,21 +11,46 @@
 
 namespace rbvi {
 
-/// The bound s = c x_n + t of |x_tau| at a node.
+/// A law of friction at one mu: the bound s = c x_n + t of |x_tau| at a node. All that solvers ask
+/// of a law are its functions: they hold s as a function that is linear piece by piece, and may
+/// jump where contact begins.
 struct FrictionBound {
   double coefficient = 0;       ///< c >= 0
   double threshold = 0;         ///< t >= 0
   bool only_in_contact = false; ///< t = 0 while the node carries no pressure
 
-  double threshold_at(double x_n) const { return x_n > 0 || !only_in_contact ? threshold : 0.0; }
-  /// s; a negative x_n counts as zero.
-  double value(double x_n) const { return coefficient * std::max(x_n, 0.0) + threshold_at(x_n); }
-  /// Whether t appears only when the node touches, so that s is not continuous.
+  /// s = offset + slope x_n while the node carries pressure.
+  struct Piece {
+    double offset, slope;
+  };
+  /// Which piece x_n is on, from 0, which begins at x_n = 0: a part of the state of a node that
+  /// slips.
+  int piece_at(double) const { return 0; }
+  Piece piece(int) const { return {threshold, coefficient}; }
+  double slope_at(double x_n) const { return piece(piece_at(x_n)).slope; }
+  /// The slope where x_n grows from 0, which no other piece exceeds.
+  double steepest() const { return coefficient; }
+  /// s, which does not fall as x_n grows; a negative x_n counts as zero.
+  double value(double x_n) const {
+    return coefficient * std::max(x_n, 0.0) + (x_n > 0 || !only_in_contact ? threshold : 0.0);
+  }
+  /// Whether s at some x_n is above zero.
+  bool acts() const { return coefficient > 0 || threshold > 0; }
+  /// Whether s is zero at a node without pressure and above zero at any that has some.
   bool jumps() const { return only_in_contact && threshold > 0; }
+  /// Whether s depends on x_n.
+  bool follows_pressure() const { return coefficient > 0 || jumps(); }
   /// Whether x_tau of a node can differ from zero.
   bool carries_traction(bool in_contact) const {
-    if (threshold > 0) return in_contact || !only_in_contact;
-    return in_contact && coefficient > 0;
+    return in_contact ? acts() : threshold > 0 && !only_in_contact;
+  }
+  /// Laws on the way to this one: with this part of its slopes; with s at zero so many times as
+  /// high.
+  FrictionBound with_slopes(double part) const {
+    return {part * coefficient, threshold, only_in_contact};
+  }
+  FrictionBound with_threshold(double factor) const {
+    return {coefficient, factor * threshold, only_in_contact};
   }
   /// Throws bad_input for a coefficient or a threshold that is negative or not finite.
   void check() const;
