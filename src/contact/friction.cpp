@@ -8,12 +8,17 @@ namespace rbvi {
 FrictionBound friction_bound(const Friction &friction, const FullMu &all_parameters) {
   FrictionBound bound;
   if (friction.law == FrictionLaw::none) return bound;
-  const double value = friction.value(all_parameters);
-  if (!(value >= 0))
-    throw failure("the friction coefficient or threshold is " + short_number(value) +
-                  ": it must not be negative");
-  (friction.law == FrictionLaw::coulomb ? bound.coefficient : bound.threshold) = value;
+  const auto at_mu = [&](const Named<Coefficient> &number, const char *what) {
+    const double value = number(all_parameters);
+    if (!(value >= 0))
+      throw failure("the " + std::string(what) + " is " + short_number(value) +
+                    ": it must not be negative");
+    return value;
+  };
+  (friction.law == FrictionLaw::coulomb ? bound.coefficient : bound.threshold) =
+      at_mu(friction.value, "friction coefficient or threshold");
   bound.only_in_contact = friction.only_in_contact;
+  if (friction.limit) bound.limit = at_mu(friction.limit, "limit of friction");
   return bound;
 }
 
@@ -23,6 +28,7 @@ void add_friction(const Friction &friction, ContactRecipe &recipe) {
   recipe.coefficients.push_back(
       {friction.law == FrictionLaw::coulomb ? "coefficient of friction" : "threshold of friction",
        friction.value});
+  if (friction.limit) recipe.coefficients.push_back({"limit of friction", friction.limit});
 }
 
 void add_friction(const Friction &friction, Record &record) {
@@ -31,6 +37,7 @@ void add_friction(const Friction &friction, Record &record) {
   part.name = friction.law == FrictionLaw::coulomb ? "coulomb" : "tresca";
   part.numbers["only_in_contact"] = {friction.only_in_contact ? 1.0 : 0.0};
   part.parts["value"] = friction.value.record;
+  if (friction.limit) part.parts["limit"] = friction.limit.record;
 }
 
 Friction friction_in(const Stored &of) {
@@ -39,8 +46,12 @@ Friction friction_in(const Stored &of) {
   const std::string &law = friction.record.name;
   if (law != "coulomb" && law != "tresca")
     throw bad_input("friction '" + law + "' is not in this build: make the model again");
-  return {law == "coulomb" ? FrictionLaw::coulomb : FrictionLaw::tresca,
-          made<Coefficient>(part(friction, "value")), number(friction, "only_in_contact") != 0};
+  Friction result{law == "coulomb" ? FrictionLaw::coulomb : FrictionLaw::tresca,
+                  made<Coefficient>(part(friction, "value")),
+                  number(friction, "only_in_contact") != 0};
+  if (friction.record.parts.contains("limit"))
+    result.limit = made<Coefficient>(part(friction, "limit"));
+  return result;
 }
 
 } // namespace rbvi

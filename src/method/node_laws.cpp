@@ -8,9 +8,9 @@
 namespace rbvi {
 
 void FrictionBound::check() const {
-  const bool valid =
-      std::isfinite(coefficient) && std::isfinite(threshold) && coefficient >= 0 && threshold >= 0;
-  if (!valid) throw bad_input("the coefficient and the threshold of friction must not be negative");
+  const bool valid = std::isfinite(coefficient) && std::isfinite(threshold) && coefficient >= 0 &&
+                     threshold >= 0 && limit >= 0;
+  if (!valid) throw bad_input("coefficient, threshold and limit of friction must not be negative");
 }
 
 std::vector<FrictionBound> bounds_per_node(const std::vector<FrictionBound> &bounds, Index nodes) {

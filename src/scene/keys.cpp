@@ -171,6 +171,8 @@ const std::vector<CaseKey> all_keys{
     {"contact.*.against.plane", "tilt", "expression", "radians, counterclockwise about the pivot",
      false, "1"},
     {"contact.*.friction", "coulomb", "expression", "the coefficient", false, "1"},
+    {"contact.*.friction", "limit", "expression", "of Coulomb's bound, a pressure; default: none",
+     false, "N/m^2"},
     {"contact.*.friction", "tresca", "expression", "the threshold, a pressure", false, "N/m^2"},
     {"contact.*.friction", "bound", "everywhere | contact",
      "where Tresca's threshold holds: on the whole boundary, or where there is contact (between "

@@ -36,6 +36,10 @@ Friction friction_in(Reader &reader, const CaseNode &contact, Scene &scene) {
   friction.only_in_contact =
       choice_or(*node, "bound", "everywhere", {"everywhere", "contact"}) == "contact";
   if (coulomb != nullptr) limit(reader, expression_in(reader, value), friction_range, scene);
+  if (const CaseNode *most = node->find("limit"); most != nullptr) {
+    if (coulomb == nullptr) throw bad_input("friction has a 'limit' beside 'coulomb' alone");
+    friction.limit = coefficient_of(formula_in(reader, *most));
+  }
   return friction;
 }
 

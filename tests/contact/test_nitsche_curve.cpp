@@ -34,8 +34,11 @@ Vector product(const std::vector<NitscheFace> &faces, const std::vector<FaceBloc
   return result;
 }
 
-const NitscheLaw laws_of_tests[] = {
-    {}, FrictionBound{0, 0.4, false}, FrictionBound{0, 0.4, true}, FrictionBound{0.3, 0, false}};
+const NitscheLaw laws_of_tests[] = {{},
+                                    FrictionBound{0, 0.4, false},
+                                    FrictionBound{0, 0.4, true},
+                                    FrictionBound{0.3, 0, false},
+                                    FrictionBound{0.3, 0, false, 0.4}};
 
 /// The bounds of friction that a state tells.
 Vector bounds_of(const Example &e, const Vector &u, const NitscheLaw &law) {
@@ -213,6 +216,7 @@ TEST(NitscheLaws, BoundsAreThoseOfTheLaw) {
   EXPECT_EQ(bounds(laws_of_tests[1]), Vector::Constant(3, 0.4));
   EXPECT_EQ(bounds(laws_of_tests[2]), Vector({{0.4, 0, 0}}));
   EXPECT_EQ(bounds(laws_of_tests[3]), Vector({{0.6, 0, 0}}));
+  EXPECT_EQ(bounds(laws_of_tests[4]), Vector({{0.4, 0, 0}}));
   EXPECT_EQ(friction_term(0.3, -1, 2).energy, 0);
   EXPECT_EQ(friction_term(0, -1, 2).curvature, 0);
 }
@@ -233,6 +237,7 @@ TEST(NitscheLaws, AreThoseOfTheSceneAndNotNegative) {
   EXPECT_TRUE(moves(law_of({FrictionLaw::tresca, value, true}, {0.3})));
   EXPECT_THROW(law_of({FrictionLaw::coulomb, value}, {-0.1}), Error);
   EXPECT_THROW(law_of({FrictionLaw::tresca, value}, {std::nan("")}), Error);
+  EXPECT_THROW(law_of({FrictionLaw::coulomb, constant(0.3), false, value}, {-0.1}), Error);
 }
 
 class NitscheFieldsOf : public ::testing::TestWithParam<std::tuple<int, Side>> {};

@@ -23,7 +23,8 @@ struct FrictionProblem {
 };
 
 inline double bound_of(const FrictionBound &bound, double normal) {
-  return bound.coefficient * normal + (normal > 0 || !bound.only_in_contact ? bound.threshold : 0);
+  const double threshold = normal > 0 || !bound.only_in_contact ? bound.threshold : 0;
+  return std::min(bound.coefficient * normal + threshold, bound.limit);
 }
 
 inline Vector projected(const Vector &y, double radius) {

@@ -28,7 +28,7 @@ Vector bounds_of(const CollocatedProblem &p, const Vector &x) {
   return Vector::NullaryExpr(pressure.size(), [&](Index j) {
     const FrictionBound &bound = bound_at(p, j);
     const bool held = pressure[j] > 0 || !bound.only_in_contact;
-    return bound.coefficient * pressure[j] + (held ? bound.threshold : 0);
+    return std::min(bound.coefficient * pressure[j] + (held ? bound.threshold : 0), bound.limit);
   });
 }
 
@@ -164,6 +164,23 @@ TEST(CollocatedFriction, LawsHoldForRandomProblems) {
       p.bounds = {bound};
       // Where the bound jumps at the first pressure, a problem need not have a solution.
       if (!bound.only_in_contact) expect_solved(p);
+    }
+  }
+}
+
+TEST(CollocatedFriction, ABoundMayHaveALimit) {
+  Random random(17);
+  for (int k = 0; k < 200; ++k) {
+    CollocatedProblem p = random_problem(random, 1 + k % 9, 1 + (k / 3) % 7, k % 12);
+    p.bounds = {{0.3, 0, false}};
+    const Vector coulomb = expect_solved(p).x;
+    const Vector bounds = bounds_of(p, coulomb);
+    const double highest = bounds.size() > 0 ? bounds.maxCoeff() : 0;
+    p.bounds = {{0.3, 0, false, 2 * highest + 1}};
+    EXPECT_EQ(expect_solved(p).x, coulomb);
+    for (const double part : {0.9, 0.5, 0.01, 0.0}) {
+      p.bounds = {{0.3, 0, false, part * highest}};
+      expect_solved(p);
     }
   }
 }

@@ -112,7 +112,7 @@ TEST(Friction, AgreesWithTheFixedPointOfItsDefinition) {
     for (const int dim : {2, 3})
       for (const FrictionBound &bound :
            {FrictionBound{0.15, 0, false}, FrictionBound{0, 0.2, false},
-            FrictionBound{0.1, 0.1, false}}) {
+            FrictionBound{0.1, 0.1, false}, FrictionBound{0.15, 0, false, 0.1}}) {
         const Index n = dim * (1 + k);
         const FrictionProblem p{random_positive(random, n, 0.5 * static_cast<double>(n)),
                                 static_cast<double>(n) * random.vector(n), dim};
@@ -120,6 +120,36 @@ TEST(Friction, AgreesWithTheFixedPointOfItsDefinition) {
         ASSERT_LT(violation(p, bound, expected), 1e-12);
         EXPECT_LT((expect_solved(p, bound).x - expected).norm(), 1e-10 * (1 + expected.norm()));
       }
+}
+
+/// Coulomb's bound up to a limit: some nodes slip below it, others at it.
+TEST(Friction, ABoundMayHaveALimit) {
+  Random random(17);
+  for (int k = 0; k < 60; ++k)
+    for (const int dim : {2, 3}) {
+      const Index n = dim * (1 + k % 15);
+      const FrictionProblem p{random_positive(random, n, std::pow(10, -(k % 4) * 2)),
+                              random.vector(n), dim};
+      for (const double limit : {0.3, 0.03, 0.0})
+        for (const double threshold : {0.0, 0.02})
+          expect_solved(p, {0.3, threshold, false, limit});
+    }
+  for (const int dim : {2, 3})
+    for (const double slide : {0.05, 0.2, 1.0}) {
+      const FrictionProblem p = punch(41, dim, 12, slide);
+      const FrictionResult coulomb = expect_solved(p, {0.3, 0, false});
+      const double highest = 0.3 * coulomb.x.head(p.nodes()).maxCoeff();
+      EXPECT_EQ(expect_solved(p, {0.3, 0, false, 1.001 * highest}).x, coulomb.x);
+      const FrictionResult capped = expect_solved(p, {0.3, 0, false, highest / 2});
+      EXPECT_EQ(capped.backup_steps, 0);
+      EXPECT_LT(capped.iterations, 25);
+      int below = 0, at_it = 0;
+      for (Index i = 0; i < p.nodes(); ++i)
+        if (capped.states[i] == NodeState::slip)
+          ++(0.3 * capped.x[i] < highest / 2 ? below : at_it);
+      EXPECT_GT(below, 0);
+      EXPECT_GT(at_it, 0);
+    }
 }
 
 TEST(Friction, FindsOneOfTheSolutionsThatEnumerationFinds) {

@@ -317,6 +317,7 @@ TEST(WrongCase, BodiesAndContact) {
       {floor(plane + ", lumped: maybe"), "use yes or no"},
       {floor(plane + ", friction: 0.3"), "friction is a table"},
       {floor(plane + ", friction: {coulomb: 0.3, tresca: 1}"), "'coulomb: COEFFICIENT' or"},
+      {floor(plane + ", friction: {tresca: 1, limit: 2}"), "beside 'coulomb' alone"},
       {floor(plane + ", formulation: penalty"), "use one of mixed, nitsche"},
       {floor(plane + ", formulation: nitsche, lumped: yes"), "is for contact by multipliers"},
       {floor(plane + ", formulation: nitsche, nitsche_gamma0: 0"), "between 0.1 and 2000"},

@@ -37,7 +37,7 @@ Point exact(const FullMu &mu, const Point &x) {
 
 /// The block [0, 1] x [0, 1/2] turned by an angle about a corner, on a plane that is turned as
 /// well; the exact displacement is imposed on all other sides.
-Scene turned_block(int degree, FrictionLaw law) {
+Scene turned_block(int degree, FrictionLaw law, const Named<Coefficient> &limit = {}) {
   Scene scene = make_scene("patch", {{"bodies", "one"}, {"friction", "none"}});
   scene.degree = degree;
   scene.parameters = all_free({{"angle", "", -3, 3, 0},
@@ -56,7 +56,7 @@ Scene turned_block(int degree, FrictionLaw law) {
   scene.v_product = {exact_term(h1_product(1, 2, degree))};
   scene.fixed = {{"sides", {}, {{exact}}}, {"top", {}, {{exact}}}};
   HalfPlane plane{"contact", {0, -1, 0}, {0, 0, 0}, constant(pushed), parameter(angle)};
-  if (law != FrictionLaw::none) plane.friction = {law, parameter(friction)};
+  if (law != FrictionLaw::none) plane.friction = {law, parameter(friction), false, limit};
   scene.contacts = {half_plane(plane)};
   return scene;
 }
@@ -109,7 +109,7 @@ TEST(TiltedPatch, SoIsAShearThatSticks) {
     }
 }
 
-/// Coulomb's and Tresca's bound hold with equality against the slip.
+/// Coulomb's and Tresca's bound hold with equality against the slip, and so does a limit.
 TEST(TiltedPatch, SoIsAShearThatSlides) {
   const double pressure = modulus() * 0.05;
   for (const int degree : {1, 2})
@@ -119,6 +119,8 @@ TEST(TiltedPatch, SoIsAShearThatSlides) {
                    {0.4, 0.05, sign * 0.03, sign * 0.3 * pressure / shear_modulus(), 0.3});
       expect_exact(turned_block(degree, FrictionLaw::tresca),
                    {0.4, 0.05, sign * 0.03, sign * 0.3 / shear_modulus(), 0.3});
+      expect_exact(turned_block(degree, FrictionLaw::coulomb, constant(0.2 * pressure)),
+                   {0.4, 0.05, sign * 0.03, sign * 0.2 * pressure / shear_modulus(), 0.3});
     }
 }
 

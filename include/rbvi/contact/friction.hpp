@@ -8,11 +8,12 @@
 namespace rbvi {
 
 /// |sigma_tau| <= bound: Tresca's threshold (a pressure), or Coulomb's coefficient times the normal
-/// pressure.
+/// pressure, up to a limit where there is one.
 struct Friction {
   FrictionLaw law = FrictionLaw::none;
   Named<Coefficient> value;     ///< threshold or coefficient, >= 0
   bool only_in_contact = false; ///< Tresca: zero where a node carries no pressure
+  Named<Coefficient> limit{};   ///< of Coulomb's bound, a pressure >= 0; empty: none
 };
 
 /// The bound at one mu. Throws failure, naming the value, for a negative one.

@@ -7,17 +7,19 @@
 #include "rbvi/core/dense.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace rbvi {
 
-/// A law of friction at one mu: the bound s = c x_n + t of |x_tau| at a node. All that solvers ask
-/// of a law are its functions: they hold s as a function that is linear piece by piece, and may
-/// jump where contact begins.
+/// A law of friction at one mu: the bound s = min(c x_n + t, m) of |x_tau| at a node. All that
+/// solvers ask of a law are its functions: they hold s as a function that is linear piece by piece,
+/// and may jump where contact begins.
 struct FrictionBound {
   double coefficient = 0;       ///< c >= 0
   double threshold = 0;         ///< t >= 0
   bool only_in_contact = false; ///< t = 0 while the node carries no pressure
+  double limit = std::numeric_limits<double>::infinity(); ///< m >= 0
 
   /// s = offset + slope x_n while the node carries pressure.
   struct Piece {
@@ -25,34 +27,37 @@ struct FrictionBound {
   };
   /// Which piece x_n is on, from 0, which begins at x_n = 0: a part of the state of a node that
   /// slips.
-  int piece_at(double) const { return 0; }
-  Piece piece(int) const { return {threshold, coefficient}; }
+  int piece_at(double x_n) const { return threshold + coefficient * x_n > limit ? 1 : 0; }
+  Piece piece(int number) const {
+    return number == 0 ? Piece{threshold, coefficient} : Piece{limit, 0};
+  }
   double slope_at(double x_n) const { return piece(piece_at(x_n)).slope; }
   /// The slope where x_n grows from 0, which no other piece exceeds.
   double steepest() const { return coefficient; }
   /// s, which does not fall as x_n grows; a negative x_n counts as zero.
   double value(double x_n) const {
-    return coefficient * std::max(x_n, 0.0) + (x_n > 0 || !only_in_contact ? threshold : 0.0);
+    const double at_zero = x_n > 0 || !only_in_contact ? threshold : 0.0;
+    return std::min(coefficient * std::max(x_n, 0.0) + at_zero, limit);
   }
   /// Whether s at some x_n is above zero.
-  bool acts() const { return coefficient > 0 || threshold > 0; }
+  bool acts() const { return limit > 0 && (coefficient > 0 || threshold > 0); }
   /// Whether s is zero at a node without pressure and above zero at any that has some.
   bool jumps() const { return only_in_contact && threshold > 0; }
   /// Whether s depends on x_n.
   bool follows_pressure() const { return coefficient > 0 || jumps(); }
   /// Whether x_tau of a node can differ from zero.
   bool carries_traction(bool in_contact) const {
-    return in_contact ? acts() : threshold > 0 && !only_in_contact;
+    return acts() && (in_contact || (threshold > 0 && !only_in_contact));
   }
   /// Laws on the way to this one: with this part of its slopes; with s at zero so many times as
   /// high.
   FrictionBound with_slopes(double part) const {
-    return {part * coefficient, threshold, only_in_contact};
+    return {part * coefficient, threshold, only_in_contact, limit};
   }
   FrictionBound with_threshold(double factor) const {
-    return {coefficient, factor * threshold, only_in_contact};
+    return {coefficient, factor * threshold, only_in_contact, limit};
   }
-  /// Throws bad_input for a coefficient or a threshold that is negative or not finite.
+  /// Throws bad_input for a number that is negative or, but for m, not finite.
   void check() const;
 };
 
