@@ -40,9 +40,9 @@ Factors factorise(const Matrix &x, const Matrix &g) {
     factors.h.row(p) = projection.x();
   }
   const auto objective = [&] { return (x - factors.g * factors.h.transpose()).squaredNorm(); };
-  const double exact = round_off * round_off * x.squaredNorm();
+  const double least = round_off * round_off * x.squaredNorm();
   double before = objective();
-  for (int k = 0; k < most_sweeps && before > exact; ++k) {
+  for (int k = 0; k < most_sweeps && before > least; ++k) {
     sweep(factors.g, x * factors.h, factors.h.transpose() * factors.h);
     sweep(factors.h, x.transpose() * factors.g, factors.g.transpose() * factors.g);
     const double after = objective();
