@@ -164,7 +164,7 @@ EdgeEnds ends_of(const InterfaceMesh &mesh, Index e) {
 } // namespace
 
 void check_body_normal(const Scene &scene, const Facing &facing, const InterfaceMesh &mesh) {
-  constexpr double round_off = 0.02; // of vertices near each other
+  constexpr double scatter = 0.02; // of vertices near each other
   if (!facing.body_normal) return;
   FullMu mu;
   for (const Parameter &parameter : scene.parameters.all)
@@ -175,7 +175,7 @@ void check_body_normal(const Scene &scene, const Facing &facing, const Interface
                 n = facing.body_normal(mu, middle),
                 of_edge = Point{along[1], -along[0], 0} / norm(along);
     const double turning = norm(facing.body_normal(mu, end) - facing.body_normal(mu, begin));
-    if (!(norm(n - of_edge) <= turning + round_off))
+    if (!(norm(n - of_edge) <= turning + scatter))
       throw bad_input("scene " + scene.name + ": the normal of the contact boundary at (" +
                       short_number(middle[0]) + ", " + short_number(middle[1]) + ") is (" +
                       short_number(n[0]) + ", " + short_number(n[1]) + "), and that of its edge (" +
