@@ -215,6 +215,21 @@ std::string end_of(const Outputs &outputs) {
          "contact reaches the end of its boundary";
 }
 
+/// Nitsche reduced, with contact that is at no training parameter: the model's points and modes see
+/// another one, which the whole curve tells. Where they see it, what is left of it is round-off, or
+/// of the size of the errors that were measured.
+std::string unseen_warning(const Outputs &outputs) {
+  constexpr double least = 1e-3, times = 10;
+  const double left = outputs.quadrature_residual.value_or(0);
+  const double measured =
+      std::max(outputs.expected_error_u.value_or(1), outputs.expected_error_lambda.value_or(1));
+  if (!(left > std::max(least, times * measured))) return "";
+  return "quadrature_residual is " + short_number(left) + ", where errors of " +
+         formatted("%.1e", measured) +
+         " were measured: contact is not as at the training parameters, and errors are larger than "
+         "printed; train with parameters nearby";
+}
+
 /// Of one interface.
 std::string zone_warning(const Outputs &outputs) {
   // Measured on rigid_disk (its README): with 7 nodes in contact forces are 3e-3 off and the peak
@@ -255,6 +270,7 @@ std::string zone_warning(const Outputs &outputs) {
 
 std::string resolution_warning(const Outputs &outputs) {
   if (outputs.ends_in_contact.value_or(0) > 0) return end_warning(end_of(outputs));
+  if (const std::string warning = unseen_warning(outputs); !warning.empty()) return warning;
   if (outputs.overlap && outputs.contact_nodes == 0)
     return "the bodies overlap by " + short_number(*outputs.overlap) +
            " between nodes, and no multiplier carries a pressure: contact is narrower than the "

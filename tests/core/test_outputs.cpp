@@ -147,6 +147,22 @@ TEST(ValidityWarning, IsToldOfTheFirstAnswerThatSmallKinematicsDoNotHoldFor) {
   EXPECT_NE(validity_warning(strained).find("in 50 % of the body"), std::string::npos);
 }
 
+/// Contact between training parameters that is at none of them; models whose integrals are rough by
+/// choice have measured errors of that size.
+TEST(ResolutionWarning, IsOfContactThatAModelDoesNotSee) {
+  Outputs outputs = zones(40, 30, 1);
+  outputs.quadrature_residual = 0.017;
+  EXPECT_EQ(resolution_warning(outputs), "") << "no errors were measured: that is said";
+  outputs.expected_error_u = 1e-14;
+  outputs.expected_error_lambda = 3e-14;
+  EXPECT_NE(resolution_warning(outputs).find("errors are larger than printed"), std::string::npos);
+  outputs.expected_error_lambda = 2e-3;
+  EXPECT_EQ(resolution_warning(outputs), "");
+  outputs.expected_error_lambda = 3e-14;
+  outputs.quadrature_residual = 1e-4;
+  EXPECT_EQ(resolution_warning(outputs), "");
+}
+
 /// An interface that barely touches is not hidden by one that touches widely.
 TEST(ResolutionWarning, IsThatOfEachInterface) {
   Outputs both, upper = zones(40, 30, 1), lower = zones(3, 3, 1e-3);

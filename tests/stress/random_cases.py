@@ -10,7 +10,7 @@ answer too. One line a case:
     WARNED   an output off by more than 1 %, and a line of offline, verify or the query warns
     WRONG    the same, and nothing is said
     CRASH    a program ended by a signal, or a model that offline wrote cannot be read
-    refused  offline says why it makes no model
+    refused  offline says why it makes no model, or verify why it measures none
 
 Then how many there are of each, and full solves that were refused, by their reason. The exit status is 1 where a case is WRONG or a
 CRASH, or where fewer than 95 % of the models are the same.
@@ -211,6 +211,8 @@ class Run:
         if not (run / "model.h5").exists():
             return "refused", reason(made.stderr or made.stdout)
         checked = self.program("rbvi", "verify", "-out", run)
+        if "samples failed, more than" in checked.stderr:
+            return "refused", "verify: " + reason(checked.stderr)
         if checked.returncode:
             return "CRASH", "verify: " + reason(checked.stderr)
         points = self.case.points()
