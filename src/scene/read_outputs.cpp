@@ -174,6 +174,10 @@ OutputForm output_in(Reader &reader, const std::string &name, const CaseNode &no
     put_spring(reader, node, scene, form);
   } else {
     put_place(reader, node, scene, form);
+    if (form.place == Place::contact && scene.components == 1)
+      throw bad_input("outputs over contact are of curves, that of a membrane is a region: of it "
+                      "there are normal_force, contact_measure and peak_pressure, and with 'in: "
+                      "REGION' what its displacement gives");
     put_values(reader, node, entry(node, kind), scene, form);
   }
   return form;

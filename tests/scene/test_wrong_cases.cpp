@@ -72,6 +72,23 @@ TEST(WrongCase, Outputs) {
   });
 }
 
+/// At its line, not by the first solve.
+TEST(WrongCase, OutputsOverTheContactOfAMembrane) {
+  const auto with = [](const std::string &output) {
+    return said("rbvi: 1\nphysics: membrane\nmesh: {built_in: square_with_disc}\n"
+                "parameters: {height: {range: [-1, 1], default: 0}}\n"
+                "imposed: {rim: {at: boundary, u: 0}}\n"
+                "contact: {c: {at: obstacle, above: height}}\noutputs:\n  own: " +
+                output + "\n");
+  };
+  for (const char *over : {"{measure: contact, at: c}", "{integral: pressure}", "{max: u}"}) {
+    const std::string message = with(over);
+    EXPECT_TRUE(message.starts_with("x.yaml:8:")) << message;
+    EXPECT_NE(message.find("outputs over contact are of curves"), std::string::npos) << message;
+  }
+  EXPECT_EQ(with("{max: u, in: obstacle}"), "");
+}
+
 TEST(WrongCase, TheBlockItselfIsRight) {
   EXPECT_EQ(said(block_case()), "");
 }
