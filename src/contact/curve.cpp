@@ -175,7 +175,7 @@ void check_body_normal(const Scene &scene, const Facing &facing, const Interface
                 n = facing.body_normal(mu, middle),
                 of_edge = Point{along[1], -along[0], 0} / norm(along);
     const double turning = norm(facing.body_normal(mu, end) - facing.body_normal(mu, begin));
-    if (!(norm(n - of_edge) <= turning + scatter))
+    if (!(norm(n - of_edge) <= turning / 4 + scatter))
       throw bad_input("scene " + scene.name + ": the normal of the contact boundary at (" +
                       short_number(middle[0]) + ", " + short_number(middle[1]) + ") is (" +
                       short_number(n[0]) + ", " + short_number(n[1]) + "), and that of its edge (" +

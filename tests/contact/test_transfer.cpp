@@ -70,7 +70,7 @@ TEST(Transfer, HatFunctionsOfTrianglesAreExactForLinearValues) {
 }
 
 TEST(Transfer, IsExactForLinearValuesBetweenHalvedEdges) {
-  const Scene scene = make_scene("rigid_disk", {{"friction", "coulomb"}});
+  const Scene scene = make_scene("patch", {{"bodies", "one"}, {"friction", "coulomb"}});
   const Contact coarse = curve(scene, 10), fine = curve(scene, 20);
   const auto values = [](const Contact &contact) {
     const DualSpace &dual = contact.interfaces.front()->dual();
@@ -89,7 +89,7 @@ TEST(Transfer, IsExactForLinearValuesBetweenHalvedEdges) {
 }
 
 TEST(Transfer, RefusesInterfacesOfAnotherScene) {
-  const Scene scene = make_scene("rigid_disk", {{"friction", "coulomb"}});
+  const Scene scene = make_scene("patch", {{"bodies", "one"}, {"friction", "coulomb"}});
   const Contact one = curve(scene, 10);
   EXPECT_THROW(interpolation(one, Contact{}), Error);
 }

@@ -100,7 +100,7 @@ TEST(BodyBalance, OfUnknownForcesThereIsNone) {
 const std::string beam =
     "physics: PHYSICS\nmesh: {built_in: one_block, degree: 2}\nMIRROR"
     "materials: {rubber: {at: all, E: 15, nu: 0.3}}\n"
-    "imposed: {top: {at: top, ux: 0, uy: -d}, axis: {at: sides, ux: 0}}\n"
+    "imposed: {top: {at: top, uy: -d}, axis: {at: sides, ux: 0}}\n"
     "loads: {weight: {at: all, force: [0, -d]}}\n"
     "contact: {floor: {at: contact, against: {plane: {normal: [0, -1], position: 0}}"
     "FORMULATION}}\noutputs: {up: {reaction: [0, 1], at: top}}\n";

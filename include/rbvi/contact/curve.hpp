@@ -121,7 +121,7 @@ std::size_t count_pieces(const InterfaceMesh &mesh);
 /// off its edge (move_middles): Facing::on_curve.
 Facing on_arcs(Facing facing, const InterfaceMesh &mesh);
 /// Throws bad_input where the normal that a facing has of the body's boundary is off that of an
-/// edge by more than it turns along the edge.
+/// edge by more than a quarter of its turn along it.
 void check_body_normal(const Scene &scene, const Facing &facing, const InterfaceMesh &mesh);
 
 /// Gram matrix in L2 of the hat functions of the polygon through `points`, `copies` blocks; of a
