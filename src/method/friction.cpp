@@ -66,12 +66,17 @@ public:
       State point = evaluate(h_, q_, Vector::Zero(q_.size()));
       outcome = newton(laws_, point);
     }
-    if (outcome == Outcome::cycles && searches) outcome = Outcome::known;
-    if (outcome == Outcome::cycles) {
+    const bool settles = laws_.jump() && laws_.steepest() == 0;
+    if (outcome == Outcome::cycles && !searches) {
       State point = evaluate(h_, q_, laws_.feasible(best_.x));
-      outcome = laws_.jump() && laws_.steepest() == 0 ? settle_contact(std::move(point))
-                                                      : backup(std::move(point));
+      outcome = settles ? settle_contact(laws_, point) : backup(std::move(point));
     }
+    if (settles && (outcome == Outcome::cycles || outcome == Outcome::known)) {
+      const bool from_rest = !searches || start.size() == 0;
+      State point = evaluate(h_, q_, from_rest ? Vector::Zero(q_.size()) : laws_.feasible(start));
+      outcome = settle_contact(laws_, point);
+    }
+    if (outcome == Outcome::cycles && searches) outcome = Outcome::known;
     kept_.known.merge(visited_);
     return outcome == Outcome::known ? FrictionAnswer() : finish(outcome);
   }
@@ -97,9 +102,12 @@ private:
       State next = point;
       const Laws part = comes_down ? laws_.with_thresholds(std::ldexp(1.0, steps - k))
                                    : laws_.with_slopes(static_cast<double>(k) / steps);
-      if (newton(part, next) != Outcome::converged) break;
+      if ((comes_down ? settle_contact(part, next) : newton(part, next)) != Outcome::converged)
+        break;
       point = std::move(next);
     }
+    State last = point;
+    if (comes_down && settle_contact(laws_, last) == Outcome::converged) return Outcome::converged;
     return newton(laws_, point);
   }
 
@@ -207,21 +215,21 @@ private:
 
   /// Of thresholds alone that act in contact: the nodes that touch tell the thresholds, a convex
   /// problem, whose only answer tells the nodes that touch, until they stay or come back.
-  Outcome settle_contact(State point) {
-    std::vector<std::vector<char>> seen{contact_sets(laws_, point.x).active};
+  Outcome settle_contact(const Laws &laws, State &point) {
+    std::vector<std::vector<char>> seen{contact_sets(laws, point.x).active};
     while (systems_left_ > 0) {
       ++result_.backup_steps;
-      const Laws frozen = laws_.frozen(Vector::NullaryExpr(
-          laws_.nodes, [&](Index i) { return laws_.bound(i, seen.back()[i]); }));
+      const Laws frozen = laws.frozen(
+          Vector::NullaryExpr(laws.nodes, [&](Index i) { return laws.bound(i, seen.back()[i]); }));
       point = evaluate(h_, q_, frozen.feasible(std::move(point.x)));
       if (!solve_frozen(frozen, options_.tolerance, point)) return Outcome::indefinite;
-      const std::vector<char> touching = contact_sets(laws_, point.x).active;
-      if (touching == seen.back()) return newton(laws_, point);
-      for (Index i = 0; i < laws_.nodes; ++i)
+      const std::vector<char> touching = contact_sets(laws, point.x).active;
+      undecided_ = 0;
+      for (Index i = 0; i < laws.nodes; ++i)
         undecided_ += touching[i] != seen.back()[i] ? 1 : 0;
+      if (undecided_ == 0) return &laws == &laws_ ? newton(laws, point) : Outcome::converged;
       if (std::ranges::find(seen, touching) != seen.end()) return Outcome::cycles;
       seen.push_back(touching);
-      undecided_ = 0;
     }
     return Outcome::limit;
   }

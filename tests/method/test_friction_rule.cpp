@@ -98,6 +98,60 @@ TEST(FrictionRule, ThresholdsInContactAloneComeDown) {
   EXPECT_GT(touching, 20);
 }
 
+/// All answers, by every set of nodes that may touch: with thresholds there that hold everywhere
+/// one answer is left, and it is one of the law if the same nodes touch.
+std::vector<FrictionResult> answers_by_sets(const Matrix &h, const Vector &q, double threshold) {
+  const Index nodes = q.size() / 2;
+  std::vector<FrictionResult> all;
+  for (int set = 0; set < 1 << nodes; ++set) {
+    NodeLaws laws = uniform_laws(nodes, 2, {});
+    std::vector<Index> touching;
+    for (Index i = 0; i < nodes; ++i)
+      if ((set >> i) % 2 == 1) {
+        laws.bound[i].threshold = threshold;
+        touching.push_back(i);
+      }
+    if (FrictionResult found = solve_friction(columns_of(h), q, laws);
+        found.converged && found.active == touching)
+      all.push_back(std::move(found));
+  }
+  return all;
+}
+
+/// A rigid foot on an elastic leg: while thresholds come down the rule stays with the nodes that
+/// touch as long as they are an answer, whatever others there are, and others are noticed.
+TEST(FrictionRule, ThresholdsInContactAloneKeepTheNodesThatTouch) {
+  constexpr Index nodes = 5;
+  Random random(7);
+  Matrix rigid = Matrix::Zero(2 * nodes, 3);
+  for (Index i = 0; i < nodes; ++i) {
+    rigid(i, 0) = rigid(nodes + i, 2) = 1;
+    rigid(i, 1) = 0.5 * static_cast<double>(i) - 1;
+  }
+  int several = 0, noticed = 0;
+  for (int trial = 0; trial < 24; ++trial) {
+    const Matrix h = rigid * random_positive(random, 3, 0.1) * rigid.transpose() +
+                     0.3 * Matrix::Identity(2 * nodes, 2 * nodes);
+    const Vector q = rigid * random.vector(3) + 0.1 * random.vector(2 * nodes);
+    std::vector<Index> above;
+    for (int step = 0; step < 40; ++step) {
+      const double threshold = std::pow(2, 4 - step / 4.0);
+      FrictionSolver solver(columns_of(h), uniform_laws(nodes, 2, {0, threshold, true}));
+      const FrictionAnswer found = solver.answer(q, {}, true);
+      if (step == 0) above = found.active;
+      const std::vector<FrictionResult> all = answers_by_sets(h, q, threshold);
+      const auto same = std::ranges::find(all, above, &FrictionResult::active);
+      if (same == all.end()) break;
+      ASSERT_TRUE(found.converged) << found.reason;
+      EXPECT_LT((found.x - same->x).norm(), 1e-9 * (1 + same->x.norm()));
+      several += all.size() > 1 ? 1 : 0;
+      noticed += distance_to_other_answer(solver, found) > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(several, 10);
+  EXPECT_EQ(noticed, several);
+}
+
 /// Where there is one answer the rule finds it, from any guess of the contact, in two and three
 /// dimensions.
 TEST(FrictionRule, FindsTheOnlyAnswer) {
