@@ -110,6 +110,7 @@ public:
     without_bounds.tangential.resize(0, Eigen::NoChange);
     const State unbounded = ZeroBoundElimination(without_bounds, {}).frozen(Vector(0), sets);
     sets.side.assign(p_.nodes(), 0);
+    sets.piece.assign(p_.nodes(), 0);
     sets.piece = sets.side;
     iterate(sets, p_.bounds(unbounded.x));
   }
