@@ -242,17 +242,13 @@ bool bounds_move(const std::vector<NitscheFace> &faces) {
 }
 
 std::vector<FaceBlock> nitsche_consistency(const std::vector<NitscheFace> &faces) {
-  std::vector<FaceBlock> blocks;
-  blocks.reserve(faces.size());
-  for (const NitscheFace &face : faces) {
-    FaceBlock block = FaceBlock::Zero();
-    for (const NitschePoint &point : face.points) {
-      const double factor = point.weight * consistency_term(0, face.gamma).curvature;
-      add_square(block, factor, point.sigma_n);
-      if (face.whole_stress) add_square(block, factor, point.sigma_tau);
-    }
-    blocks.push_back(block);
-  }
+  std::vector<FaceBlock> blocks(faces.size(), FaceBlock::Zero());
+  at_all_points(faces, [&](const NitscheFace &face, const NitschePoint &point, Index i) {
+    FaceBlock &block = blocks[static_cast<std::size_t>(i) / face.points.size()];
+    const double factor = point.weight * consistency_term(0, face.gamma).curvature;
+    add_square(block, factor, point.sigma_n);
+    if (face.whole_stress) add_square(block, factor, point.sigma_tau);
+  });
   return blocks;
 }
 
@@ -347,7 +343,7 @@ double line_minimum(double linear, double quadratic, const NitscheLine &line) {
 
 CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t number, const FullMu &mu,
                            const Vector &u) {
-  const Facing &facing = layer.curves[number].facing;
+  const NitscheCurve &curve = layer.curves[number];
   const std::span<const CurveCell> cells = layer.cells_of(number);
   Index count = 0;
   for (const CurveCell &cell : cells)
@@ -363,8 +359,9 @@ CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t number, const 
     const CurveCellAtMu at = curve_cell_at(layer, mu, cell);
     const Row here = local(cell.dofs, u);
     for (const std::size_t end : {0, 1}) {
-      NitschePoint point = nitsche_point(layer.scene, facing, mu, at, static_cast<double>(end));
-      if (facing.follows_state) turn_to(facing, mu, here, point);
+      NitschePoint point =
+          nitsche_point(layer.scene, curve.facing, mu, at, static_cast<double>(end));
+      if (curve.facing.follows_state) turn_to(curve.facing, mu, here, point);
       const Index vertex = cell.ends[end];
       fields.sigma_n[vertex] += point.sigma_n.dot(here);
       fields.sigma_tau[vertex] += point.sigma_tau.dot(here);
@@ -378,7 +375,6 @@ CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t number, const 
   }
   for (Vector *sum : {&fields.sigma_n, &fields.sigma_tau, &gamma})
     sum->array() /= edges.array();
-  const NitscheCurve &curve = layer.curves[number];
   fields.images = curve.images;
   for (Index vertex = 0; vertex < count; ++vertex) // the image of the edge has the other sign
     if (curve.images[vertex] < image_count(layer.scene.mirrors)) fields.sigma_tau[vertex] = 0;
