@@ -139,7 +139,8 @@ TEST(Friction, ABoundMayHaveALimit) {
       const FrictionProblem p = punch(41, dim, 12, slide);
       const FrictionResult coulomb = expect_solved(p, {0.3, 0, false});
       const double highest = 0.3 * coulomb.x.head(p.nodes()).maxCoeff();
-      EXPECT_EQ(expect_solved(p, {0.3, 0, false, 1.001 * highest}).x, coulomb.x);
+      const Vector x = expect_solved(p, {0.3, 0, false, 1.001 * highest}).x;
+      EXPECT_LT((x - coulomb.x).norm(), 1e-12 * x.norm()) << "steps on the way may meet the limit";
       const FrictionResult capped = expect_solved(p, {0.3, 0, false, highest / 2});
       EXPECT_EQ(capped.backup_steps, 0);
       EXPECT_LT(capped.iterations, 25);
