@@ -111,7 +111,6 @@ public:
     const State unbounded = ZeroBoundElimination(without_bounds, {}).frozen(Vector(0), sets);
     sets.side.assign(p_.nodes(), 0);
     sets.piece.assign(p_.nodes(), 0);
-    sets.piece = sets.side;
     iterate(sets, p_.bounds(unbounded.x));
   }
   int sweeps() const { return sweeps_; }
