@@ -2,10 +2,20 @@
 
 import csv
 import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "cases"))
+from figure_tools import beside, read_grid
+
 ENERGY, FORCES = "energy", ("normal_force", "tangential_force", "reaction")
+PEAKS, WIDTHS = ("peak_pressure", "centre_pressure"), ("contact_measure", "stick_half_width")
+MULTIPLIERS = ("pressure", "tangential_stress")
+SHAPE = ": u, multipliers, peaks, widths"  # behind the name of the row that compares them
+ROUND_OFF = 1e-13  # of the extent of a body: what a displacement that is zero may be
 
 
 @dataclass
@@ -58,12 +68,13 @@ class Lab:
             return ended
         raise Refused(refusal(ended))
 
-    def solve(self, case, mu, *options, residual=1e-6):
-        """Outputs of a high-fidelity solve, whose KKT residual is at most `residual`."""
-        table = self.work / "solve.csv"
+    def solve(self, case, mu, *options, residual=1e-6, ranks=1):
+        """Outputs of a high-fidelity solve, whose KKT residual is at most `residual`, and its fields."""
+        table, picture = self.work / "solve.csv", self.work / "solve.vtu"
         table.unlink(missing_ok=True)
-        self.answer(self.rbvi, "solve", "-case", case, "-mu", mu, "-csv", table, *options)
-        answer = read_table(table)[0]
+        launched = ("mpirun", "-n", str(ranks)) if ranks > 1 else ()
+        self.answer(*launched, self.rbvi, "solve", "-case", case, "-mu", mu, "-csv", table, "-vtu", picture, *options)
+        answer = {**read_table(table)[0], **fields(picture)}
         check_residual(answer, residual)
         return answer
 
@@ -89,6 +100,22 @@ def read_table(path):
             return text
     with open(path, encoding="utf-8", newline="") as file:
         return [{name: value(text) for name, text in row.items()} for row in csv.DictReader(file)]
+
+
+def fields(picture):
+    """u of the file of an answer, and the multipliers of the files of its contacts beside it."""
+    grid = read_grid(picture)
+    floor = ROUND_OFF * np.ptp(grid.points, axis=0).max()
+    found = {"u": np.where(abs(grid.of_nodes["u"]) < floor, 0, grid.of_nodes["u"])}
+    files = [beside(picture, "_contact")]
+    if not files[0].exists():
+        files = sorted(picture.parent.glob(f"{picture.stem}_contact_*.vtu"))
+    for file in files:
+        grid = read_grid(file)
+        found |= {name + file.stem.removeprefix(picture.stem): grid.of_nodes[name] for name in MULTIPLIERS
+                  if name in grid.of_nodes}
+        file.unlink()
+    return found
 
 
 def check_residual(answer, largest=1e-6):
@@ -118,13 +145,40 @@ def sizes(references):
     return {ENERGY: max(abs(row[ENERGY]) for row in references), **{name: force for name in FORCES}}
 
 
+def shape_deviation(answers, references, of=None):
+    """Largest difference of u, of multipliers, of peaks and of widths, each relative to its largest value of all
+    references, and which of them it is of. `of`: of these alone."""
+    kinds = [("u", "u"), *(("multipliers", name) for name in references[0] if name.startswith(MULTIPLIERS)),
+             *(("peaks", name) for name in PEAKS), *(("widths", name) for name in WIDTHS)]
+    size, apart, worst = {}, {}, (0.0, "")
+    for kind, name in kinds:
+        if name not in references[0] or (of and kind not in of):
+            continue
+        for answer, reference in zip(answers, references, strict=True):
+            if name not in answer or isinstance(reference[name], str) or isinstance(answer[name], str):
+                continue  # an empty cell
+            size[kind] = max(size.get(kind, 0), np.max(np.abs(reference[name]), initial=0))
+            apart[name] = kind, np.maximum(apart.get(name, (kind, 0))[1],
+                                           np.max(np.abs(answer[name] - reference[name]), initial=0))
+    for name, (kind, most) in apart.items():
+        share = most / size[kind] if size[kind] > 0 else (0.0 if most == 0 else float("inf"))
+        if not share <= worst[0]:
+            worst = share, name
+    return worst
+
+
 def judge(scene, what, work):
-    """The row of `work`, a function that returns (deviation, tolerance), or raises Refused or Wrong."""
+    """The rows of `work`, a function that returns (deviation, tolerance) of energies and forces, and behind them, if
+    it has looked at them, the same of the shape; or raises Refused or Wrong."""
     try:
-        apart, tolerance = work()
+        apart, tolerance, *shape = work()
     except Refused as said:
-        return Row(scene, what, "refused", said=str(said))
+        return [Row(scene, what, "refused", said=str(said))]
     except Wrong as said:
-        return Row(scene, what, "WRONG", said=str(said))
-    outcome = "same" if apart <= tolerance else "WRONG"
-    return Row(scene, what, outcome, apart, tolerance)
+        return [Row(scene, what, "WRONG", said=str(said))]
+    rows = [Row(scene, what, "same" if apart <= tolerance else "WRONG", apart, tolerance)]
+    if shape:
+        (apart, name), tolerance = shape
+        rows.append(Row(scene, what + SHAPE, "same" if apart <= tolerance else "WRONG", apart, tolerance,
+                        "" if apart <= tolerance else name))
+    return rows

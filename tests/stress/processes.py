@@ -11,13 +11,13 @@ from lab import Refused, Wrong, deviation, judge, read_table, refusal
 from models import Models, mu
 from scenes import COARSE, Scene
 
-SCENE = Scene("bracket condensed", "bracket", mesh=COARSE["bracket"])
-SEEDS = 40
+SCENES = [Scene(f"files: {case}", case, mesh=mesh) for case, mesh in COARSE.items()]
+SEEDS = 20
 
 
 class Files:
-    def __init__(self, lab):
-        self.lab, self.models = lab, Models(lab, SCENE)
+    def __init__(self, lab, scene):
+        self.lab, self.models = lab, Models(lab, scene)
         self.models.prepare()
         self.expected = self.models.ask(self.models.folder / "base", self.models.queries)
 
@@ -138,8 +138,8 @@ def flip(draw, data):
     data[draw.randrange(len(data))] ^= 1 << draw.randrange(8)
 
 
-def rows(lab):
-    files = Files(lab)
+def rows(lab, scene):
+    files = Files(lab, scene)
     for what, work in (
             ("killed while sweeping, again and again, and continued", files.killed),
             ("two runs in one directory at once", files.at_once),
@@ -153,5 +153,5 @@ def rows(lab):
             (f"a bit of the fields flipped, {SEEDS} times", lambda: files.damaged("model.fields.h5", flip)),
             ("all samples cut", lambda: files.damaged_samples(cut)),
             ("a bit of each sample flipped", lambda: files.damaged_samples(flip))):
-        yield judge("files: " + SCENE.name, what, work)
+        yield from judge(scene.name, what, work)
     shutil.rmtree(files.models.folder)

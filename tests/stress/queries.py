@@ -6,14 +6,14 @@ import shutil
 from collections import Counter
 
 import models
-from lab import ENERGY, Refused, Wrong, check_residual, deviation, judge, read_table, refusal, sizes
+from lab import ENERGY, Refused, Wrong, check_residual, deviation, judge, read_table, refusal, shape_deviation, sizes
 
 ASKED = ("membrane hybrid", "two disks condensed", "two disks cone", "disk coulomb condensed",
          "disk coulomb collocated", "disk coulomb nitsche empirical", "disk large coulomb condensed",
          "patch one condensed", "roller condensed", "roller nitsche", "seal condensed", "bracket condensed",
          "joint condensed", "bolted_flange condensed")
 COUNT, LOOKED_AT = 100000, 6
-WITHIN = 0.02
+WITHIN, SHAPES_WITHIN = 1e-3, 0.05  # energies and forces; peaks and widths
 
 
 def asked(lab, scene):
@@ -43,7 +43,7 @@ def asked(lab, scene):
         raise Wrong(f"{apart:.1e} from high-fidelity answers")
     if refused:
         raise Refused(why(lab, made.case, names, refused, len(rows)))
-    return apart, WITHIN
+    return apart, WITHIN, shape_deviation(places, right), SHAPES_WITHIN
 
 
 def corners(lab, run):
@@ -70,5 +70,5 @@ def why(lab, case, names, refused, count):
 
 
 def rows(lab, scene):
-    yield judge(scene.name, f"{COUNT} random queries and the corners", lambda: asked(lab, scene))
+    yield from judge(scene.name, f"{COUNT} random queries and the corners", lambda: asked(lab, scene))
     shutil.rmtree(lab.work / scene.name.replace(" ", "_"))

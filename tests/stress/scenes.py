@@ -48,6 +48,7 @@ def membranes():
     yield Scene("membrane graded", case, {"disc_map": "graded"})
     yield Scene("membrane consistent mcpg", case, {"lumped": "no"}, reduction=("-cone_type", "mcpg"))
     yield Scene("membrane degree 2", case, {"lumped": "no", "degree": "2"})
+    yield Scene("membrane published", case, variant="published")
     yield Scene("membrane frame", case, free=("radius", "frame_height", "frame_tilt"))
 
 
@@ -59,6 +60,7 @@ def two_disks():
     yield Scene("two disks collocated", case, reduction=reduced("collocated"))
     yield Scene("two disks direct cone", case, {"integration": "direct", "multiplier": "p1", "degree": "1"},
                 reduction=reduced("cone", "-cone_type", "mcpg"))
+    yield Scene("two disks published", case, variant="published")
     yield Scene("two disks large", case, variant="large")
 
 
@@ -76,6 +78,8 @@ def rigid_disks():
         yield Scene(f"disk large {law} condensed", case, {"friction": law}, "large")
         yield Scene(f"disk large {law} nitsche", case, {"friction": law}, "large_nitsche")
     yield Scene("disk large none cone", case, {}, "large", reduction=reduced("cone"))
+    for variant in ("published", "published_large", "nitsche_published"):
+        yield Scene(f"disk {variant}", case, variant=variant)
 
 
 def others():

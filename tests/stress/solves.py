@@ -5,11 +5,13 @@ problem (where that refuses by Uzawa's method), at large deformations by another
 with multipliers."""
 
 import case_tree
-from lab import ENERGY, FORCES, Refused, deviation, judge
+from lab import ENERGY, FORCES, Refused, deviation, judge, shape_deviation
 from scenes import COARSE, Scene
 
 RATIO = "1e-3"  # of the heights of cells to their widths, times those of the mesh
-MIXED = 0.05  # how far Nitsche's method and multipliers may be apart on these meshes
+MIXED, CONTRAST = 0.01, 0.1  # how far Nitsche's method and multipliers may be apart on these meshes, with two materials
+RANKS, KRYLOV = 1e-9, 1e-7  # two ranks against one, iterative solvers against factors
+FREED = {"patch one": {"motion": "", "imposed.top": ""}, "disk": {"imposed.flat side": ""}}  # what contact alone holds
 BASE = {"membrane_obstacle": "radius=0.2,center_x=0.01,center_y=-0.02", "two_disks": "radius=0.9",
         "rigid_disk": "radius=0.9", "patch": "indentation=0.05", "roller": "top=0.04,tilt=0.05",
         "seal": "squeeze=0.6,friction=0.2,fluid=0.3,poisson_ratio=0.45",
@@ -177,7 +179,7 @@ class Answers:
             tree["parameters"]["friction_coefficient"]["default"] = "0.1"
         return tree
 
-    def answer(self, edits, mu, *options, residual=1e-6, **choices):
+    def answer(self, edits, mu, *options, residual=1e-6, ranks=1, **choices):
         tree = self.tree(**choices)
         for where, value in edits.items():
             if where == FREE:
@@ -202,24 +204,26 @@ class Answers:
         tree.pop("outputs", None)
         case = case_tree.save(tree, self.lab.work / "case.yaml")
         mu = ",".join(f"{name}={value}" for name, value in given.items())
-        return self.lab.solve(case, mu, *options, residual=residual)
+        return self.lab.solve(case, mu, *options, residual=residual, ranks=ranks)
 
-    def two_ways(self, edits, mu):
+    def two_ways(self, edits, mu, *always):
         """Found in this way and in another."""
-        first, said = self.answer(edits, mu), None
-        for tolerance, options, choices in self.other_ways():
+        first, said = self.answer(edits, mu, *always), None
+        for tolerance, options, choices in self.other_ways(any(where.startswith("materials") for where in edits)):
             # Uzawa's method stops where its steps are small: its residual says how far it has come.
             residual = 1e-5 if "uzawa" in options else 1e-6
             try:
-                second = self.answer(edits, mu, *options, residual=residual, **choices)
-                return deviation([second], [first], of=self.of, residual=residual), tolerance
+                second = self.answer(edits, mu, *always, *options, residual=residual, **choices)
+                return (deviation([second], [first], of=self.of, residual=residual), tolerance,
+                        shape_deviation([second], [first], ("u",) if self.nitsche else None),
+                        10 * tolerance if "uzawa" in options else tolerance)
             except Refused as refused:
                 said = f"no other way: {refused}"
         raise Refused(said)
 
-    def other_ways(self):
+    def other_ways(self, contrast):
         if self.nitsche:
-            return [(MIXED, (), {"formulation": "mixed"})]
+            return [(CONTRAST if contrast else MIXED, (), {"formulation": "mixed"})]
         if self.large:
             return [(1e-6, ("-nonlinear_method", "kacanov", "-nonlinear_max_steps", "1000"), {})]
         return [(1e-6, ("-hf_contact", "eliminated"), {}),
@@ -227,8 +231,28 @@ class Answers:
 
     def rows(self):
         for what, edits, mu in (("undisturbed", {}, ""), *extremes(self.scene.case), *self.of_friction(),
-                                *self.of_gamma()):
-            yield judge(self.scene.name, what, lambda e=edits, m=mu: self.two_ways(e, m))
+                                *self.of_gamma(), *self.held_by_contact()):
+            yield from judge(self.scene.name, what, lambda e=edits, m=mu: self.two_ways(e, m))
+        yield from judge(self.scene.name, "refined once", lambda: self.two_ways({}, "", "-mesh_refine", "1"))
+        yield from judge(self.scene.name, "two ranks against one", lambda: self.against_itself(RANKS, ranks=2))
+        krylov = ("-nitsche_ksp_rtol", "1e-9") if self.nitsche else ("-hf_ksp_type", "cg", "-hf_pc_type", "gamg")
+        yield from judge(self.scene.name, "conjugate gradients" + ("" if self.nitsche else ", multigrid"),
+                         lambda: self.against_itself(KRYLOV, *krylov))
+
+    def against_itself(self, tolerance, *options, **how):
+        """Solved by other ranks or another linear solver."""
+        first, second = self.answer({}, ""), self.answer({}, "", *options, **how)
+        return deviation([second], [first]), tolerance, shape_deviation([second], [first]), 10 * tolerance
+
+    def held_by_contact(self):
+        """Bodies that lie there, by their weight; pushed by less than friction can hold, and by more."""
+        freed = next((edits for name, edits in FREED.items() if self.scene.name.startswith(name)), None)
+        if freed is None or self.nitsche or self.large:
+            return
+        for what, push in (("", "0"), (", pushed by 0.04 of its weight", "0.04"),
+                           (", pushed by twice its weight", "2")):
+            loads = {"top": {"at": "top", "traction": [f"{push}*10*indentation", "-10*indentation"]}}
+            yield f"held by contact alone{what}", {**freed, "loads": loads}, ""
 
     def of_friction(self):
         name = FRICTION.get(self.scene.case)

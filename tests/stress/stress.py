@@ -6,8 +6,8 @@ files and processes that are as bad as they come. A row ends in `same` (the answ
 one, or with that of another method, within the tolerance that it shows), `refused` (one line that says why, exit
 status 1 or 2), or `WRONG`, which makes this program fail. So does a row that is worse than in stress.csv beside this
 file: refused or not made where it was `same`, or several times as far off. NAME: part of the name of a scene.
---write: the rows go to stress.csv and stress.md, whatever they were. Without python3-yaml the exit status is 77:
-skipped.
+--write: the rows go to stress.csv and stress.md, whatever they were. Without python3-yaml, h5py or matplotlib the
+exit status is 77: skipped.
 """
 
 import shutil
@@ -15,6 +15,8 @@ import sys
 from pathlib import Path
 
 try:
+    import h5py  # noqa: F401
+    import matplotlib  # noqa: F401
     import yaml  # noqa: F401
 except ImportError:
     sys.exit(77)
@@ -40,7 +42,7 @@ def by_scene(lab, section, names):
     elif section == "solves":
         yield from (solves.rows(lab, scene) for scene in solves.solved() if chosen(scene.name))
     elif section == "files":
-        yield processes.rows(lab)
+        yield from (processes.rows(lab, scene) for scene in processes.SCENES if chosen(scene.name))
     else:
         asked = (scene for scene in scenes() if scene.name in queries.ASKED and chosen(scene.name))
         yield from (queries.rows(lab, scene) for scene in asked)
@@ -69,7 +71,7 @@ def main():
             of_section += rows
         all_rows += of_section
         if "--write" not in words:
-            fallen += worse(section, of_section, choice_of([] if section == "files" else plain[2:]))
+            fallen += worse(section, of_section, choice_of(plain[2:]))
     count = {outcome: sum(row.outcome == outcome for row in all_rows) for outcome in OUTCOMES}
     print(f"{len(all_rows)} rows: " + ", ".join(f"{many} {outcome}" for outcome, many in count.items()))
     for sentence in fallen:

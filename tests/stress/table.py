@@ -45,7 +45,8 @@ def commit():
                               check=True).stdout.strip()
     changed = git("status", "--porcelain", "--untracked-files=no", "--", "../../src", "../../include",
                   "../../cases/*.yaml")
-    return git("rev-parse", "--short", "HEAD") + ("-dirty" if changed else "")
+    return git("log", "-1", "--format=%h", "--", "../../src", "../../include", "../../cases/*.yaml") + (
+        "-dirty" if changed else "")
 
 
 def put(section, rows, work):
