@@ -12,7 +12,7 @@ from models import Models, mu
 from scenes import COARSE, Scene
 
 SCENES = [Scene(f"files: {case}", case, mesh=mesh) for case, mesh in COARSE.items()]
-SEEDS = 20
+SEEDS = 10
 
 
 class Files:
