@@ -155,9 +155,11 @@ def shape_deviation(answers, references, of=None):
         if name not in references[0] or (of and kind not in of):
             continue
         for answer, reference in zip(answers, references, strict=True):
-            if name not in answer or isinstance(reference[name], str) or isinstance(answer[name], str):
+            if isinstance(reference.get(name, ""), str):
                 continue  # an empty cell
             size[kind] = max(size.get(kind, 0), np.max(np.abs(reference[name]), initial=0))
+            if isinstance(answer.get(name, ""), str):
+                continue
             apart[name] = kind, np.maximum(apart.get(name, (kind, 0))[1],
                                            np.max(np.abs(answer[name] - reference[name]), initial=0))
     for name, (kind, most) in apart.items():

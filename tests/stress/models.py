@@ -14,7 +14,7 @@ DATA = {"membrane_obstacle": ("load", "frame_height", "frame_tilt"), "two_disks"
         "seal": ("squeeze", "fluid"), "bracket": ("push", "height"), "joint": ("pretension", "pull", "shear"),
         "bolted_flange": ("bolt_force", "gas", "clearance")}
 COUNT = 8
-UNDISTURBED = 0.06  # errors of energies and forces with so few samples
+UNDISTURBED, PUBLISHED = 0.06, 0.3  # errors of energies and forces with so few samples; by the published method
 STARVED = 1  # of peaks and widths: a cone of so few samples may miss them
 
 
@@ -253,7 +253,7 @@ def rows(lab, scene):
     models = Models(lab, scene)
     def undisturbed():
         models.prepare()
-        return models.apart, UNDISTURBED, models.shape, STARVED
+        return models.apart, PUBLISHED if scene.variant == "published" else UNDISTURBED, models.shape, STARVED
     made = judge(scene.name, "undisturbed, against high-fidelity answers", undisturbed)
     if made[0].outcome == "same":
         made += [row for what, work in disturbed(models) for row in judge(scene.name, what, work)]
