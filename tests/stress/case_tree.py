@@ -91,6 +91,8 @@ class Units:
         if "file" in tree["mesh"]:
             tree["mesh"]["file"] = scale_mesh(tree["mesh"]["file"], tree["mesh"].pop("set", {}), self.length)
         on_mesh = self.length if "file" in tree["mesh"] else 1.0
+        if "v_length" in old:
+            tree["v_length"] = self.text(old["v_length"], on_mesh)
         self.parts(old, tree, on_mesh)
         self.contacts(old, tree)
         return tree
