@@ -17,6 +17,8 @@
 namespace rbvi::radial_obstacle_test {
 namespace {
 
+using std::numbers::pi;
+
 // Closed form of a radial obstacle problem: a membrane on the disc of radius a fixed at its rim,
 // under a constant load f < 0, held by the obstacle psi = -c rho^2.
 //
