@@ -75,19 +75,19 @@ private:
   void add_edge(const FullMu &mu, Index edge, const std::vector<AtRest> &rest, const Vector &state,
                 const Vector &x, NodalCondition &condition) const;
 
+  CurveShape shape_; ///< first: it refuses a mesh that is no curve
   Facing facing_;
   Friction friction_;
   std::vector<TracePoint> points_;
-  CurveShape shape_;
   Middle middle_ = Middle::none;
   Vector images_; ///< of the dual nodes
 };
 
 CurveSupport::CurveSupport(const Scene &scene, InterfaceMesh interface_mesh,
                            const RigidContact &rigid)
-    : EntitySum(scene, std::move(interface_mesh), 1), facing_(on_arcs(rigid.facing, mesh_)),
-      friction_(rigid.friction), points_(trace_points(mesh_.degree, rigid.lumped)),
-      shape_(curve_shape(mesh_, 0, "support's boundary")) {
+    : EntitySum(scene, std::move(interface_mesh), 1),
+      shape_(curve_shape(mesh_, 0, "support's boundary")), facing_(on_arcs(rigid.facing, mesh_)),
+      friction_(rigid.friction), points_(trace_points(mesh_.degree, rigid.lumped)) {
   if (mesh_.components != 2)
     throw bad_input("scene " + scene.name +
                     ": a rigid support is for displacements of two components");
