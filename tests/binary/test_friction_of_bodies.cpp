@@ -58,5 +58,20 @@ TEST_F(FrictionOfBodies, IsKeptByTheReducedModel) {
   }
 }
 
+TEST_F(FrictionOfBodies, MayHaveALimitThatTheModelKnows) {
+  std::string text = blocks;
+  const std::string law = "{coulomb: friction}";
+  text.replace(text.find(law), law.size(), "{coulomb: friction, limit: 0.1 + 0.1 * friction}");
+  spill("blocks/case.yaml", text);
+  (void)output_of(rbvi(1, "offline -case blocks -out limited"));
+  for (const auto &[mu, most] : {std::pair{"0.09,0.6,0.08", 0.16}, {"0.05,0.2,0.09", 0.12}}) {
+    const std::string online = output_of(rbvi_online(std::string("limited/model.h5 --mu ") + mu));
+    const std::string solve = output_of(rbvi(1, std::string("solve -case blocks -mu ") + mu));
+    for (const char *name : {"energy", "normal_force", "tangential_force", "peak_pressure"})
+      EXPECT_NEAR(value_of(online, name), value_of(solve, name), 1e-8) << name << " at " << mu;
+    EXPECT_NEAR(value_of(solve, "tangential_force"), most, 1e-9) << "all of it slides at the limit";
+  }
+}
+
 } // namespace
 } // namespace rbvi::friction_of_bodies_test
