@@ -72,10 +72,6 @@ PointTerm friction_term(double p, double bound, double gamma) {
   return {(p * p - rest * rest) / (2 * gamma), held / gamma, rest == 0 ? 1 / gamma : 0};
 }
 
-double coulomb_bound(double p, double coefficient) {
-  return coefficient * std::max(-p, 0.0);
-}
-
 NitschePoint nitsche_point(const Scene &scene, const Facing &facing, const FullMu &mu,
                            const CurveCellAtMu &at, double s) {
   const auto [first, second] = simplex_edges[at.edge];

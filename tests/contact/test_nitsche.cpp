@@ -47,8 +47,9 @@ TEST(NitscheTerms, CancelInTheStressWhereTheLawsHold) {
                     consistency_term(sigma, gamma_of_tests).slope,
                 0, 1e-15);
   }
-  EXPECT_EQ(coulomb_bound(-2, 0.3), 0.6);
-  EXPECT_EQ(coulomb_bound(1, 0.3), 0);
+  const NitscheLaw coulomb = FrictionBound{0.3, 0, false};
+  EXPECT_EQ(nitsche_bound(coulomb, -2), 0.6);
+  EXPECT_EQ(nitsche_bound(coulomb, 1), 0);
 }
 
 class PerDegree : public ::testing::TestWithParam<int> {};

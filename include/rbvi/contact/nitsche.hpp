@@ -33,9 +33,6 @@ PointTerm contact_term(double p, double gamma);
 /// (4.36), (4.43); nothing where the bound is below zero: no friction.
 PointTerm friction_term(double p, double bound, double gamma);
 
-/// Coulomb's bound, `coefficient` |[p]_-| (4.51).
-double coulomb_bound(double p, double coefficient);
-
 /// What a point of the curve sees of the displacement of the cell beside it: functionals of its
 /// dofs, node * 2 + component, the first 2 * nodes_per_cell entries.
 struct NitschePoint {
