@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <string>
@@ -66,10 +68,10 @@ public:
       State point = evaluate(h_, q_, Vector::Zero(q_.size()));
       outcome = newton(laws_, point);
     }
-    const bool settles = laws_.jump() && laws_.steepest() == 0;
+    const bool settles = laws_.jump();
     if (outcome == Outcome::cycles && !searches) {
       State point = evaluate(h_, q_, laws_.feasible(best_.x));
-      outcome = settles ? settle_contact(laws_, point) : backup(std::move(point));
+      outcome = settles ? settle_contact(laws_, point) : backup(laws_, point);
     }
     if (settles && (outcome == Outcome::cycles || outcome == Outcome::known)) {
       const bool from_rest = !searches || start.size() == 0;
@@ -190,48 +192,58 @@ private:
 
   /// The fixed point of the bounds, frozen in turn, with shorter steps where it turns back; and
   /// Newton whenever they settle. `point` is feasible.
-  Outcome backup(State point) {
+  Outcome backup(const Laws &laws, State &point) {
     double near = 0.5, part = 1;
     Vector before;
-    Vector held = laws_.bounds(point.x);
+    Vector held = laws.bounds(point.x);
     while (systems_left_ > 0 && result_.backup_steps < options_.max_iterations) {
       ++result_.backup_steps;
-      if (!solve_frozen(laws_.frozen(held), 1e-2 * near, point)) return Outcome::indefinite;
-      const Vector bounds = laws_.bounds(point.x), change = bounds - held;
+      if (!solve_frozen(laws.frozen(held), 1e-2 * near, point)) return Outcome::indefinite;
+      const Vector bounds = laws.bounds(point.x), change = bounds - held;
       if (change.cwiseAbs().maxCoeff() <= near * bounds.maxCoeff()) {
         near *= 0.1;
-        State trial = evaluate(h_, q_, laws_.feasible(point.x));
-        const Outcome outcome = newton(laws_, trial, /*patience=*/2);
+        State trial = evaluate(h_, q_, laws.feasible(point.x));
+        const Outcome outcome = newton(laws, trial, /*patience=*/2);
+        if (outcome == Outcome::converged) point = std::move(trial);
         if (outcome != Outcome::cycles) return outcome;
       }
       const bool turns = before.size() > 0 && change.dot(before) < 0;
       part = turns ? std::max(0.1, 0.5 * part) : std::min(1.0, 2 * part);
       before = change;
       held += part * change;
-      point = evaluate(h_, q_, laws_.frozen(held).feasible(std::move(point.x)));
+      point = evaluate(h_, q_, laws.frozen(held).feasible(std::move(point.x)));
     }
     return Outcome::limit;
   }
 
-  /// Of thresholds alone that act in contact: the nodes that touch tell the thresholds, a convex
-  /// problem, whose only answer tells the nodes that touch, until they stay or come back.
+  /// Of thresholds that act in contact alone: the nodes that touch tell them, and laws without a
+  /// jump are left, whose answer tells the nodes that touch, until they stay or come back.
   Outcome settle_contact(const Laws &laws, State &point) {
-    std::vector<std::vector<char>> seen{contact_sets(laws, point.x).active};
+    std::vector<std::vector<char>> seen{laws.jumped(point.x)};
     while (systems_left_ > 0) {
       ++result_.backup_steps;
-      const Laws frozen = laws.frozen(
-          Vector::NullaryExpr(laws.nodes, [&](Index i) { return laws.bound(i, seen.back()[i]); }));
-      point = evaluate(h_, q_, frozen.feasible(std::move(point.x)));
-      if (!solve_frozen(frozen, options_.tolerance, point)) return Outcome::indefinite;
-      const std::vector<char> touching = contact_sets(laws, point.x).active;
-      undecided_ = 0;
-      for (Index i = 0; i < laws.nodes; ++i)
-        undecided_ += touching[i] != seen.back()[i] ? 1 : 0;
+      const Outcome outcome = settle_held(laws.without_jump(seen.back()), point);
+      if (outcome != Outcome::converged) return outcome;
+      const std::vector<char> touching = laws.jumped(point.x);
+      undecided_ = std::inner_product(touching.begin(), touching.end(), seen.back().begin(), 0L,
+                                      std::plus(), std::not_equal_to());
       if (undecided_ == 0) return &laws == &laws_ ? newton(laws, point) : Outcome::converged;
       if (std::ranges::find(seen, touching) != seen.end()) return Outcome::cycles;
       seen.push_back(touching);
     }
     return Outcome::limit;
+  }
+
+  /// Of laws without a jump; a convex problem where none has a slope.
+  Outcome settle_held(const Laws &laws, State &point) {
+    point = evaluate(h_, q_, laws.feasible(std::move(point.x)));
+    if (!laws.follow_pressure())
+      return solve_frozen(laws, options_.tolerance, point) ? Outcome::converged
+                                                           : Outcome::indefinite;
+    const Outcome outcome = newton(laws, point);
+    if (outcome != Outcome::cycles) return outcome;
+    point = evaluate(h_, q_, laws.feasible(std::move(point.x)));
+    return backup(laws, point);
   }
 
   bool solve_frozen(const Laws &frozen, double tolerance, State &point) {
@@ -276,7 +288,7 @@ private:
       return "a threshold that acts in contact alone jumps where a node leaves contact: without it "
              "more nodes touch than with it (" +
              std::to_string(undecided_) +
-             " here), and neither is an answer; let it act everywhere (-friction_bound arc), "
+             " here), and neither is an answer; let it act everywhere (bound: everywhere), "
              "or ask nearby";
     const std::string after = " after " + std::to_string(options_.max_iterations) + " steps: ";
     const std::string remedy = "start closer to the solution (a smaller change of the load or of "

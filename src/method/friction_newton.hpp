@@ -33,6 +33,10 @@ struct Laws {
   static int steps_to(double steepest);
   Laws with_slopes(double part) const;
   Laws with_thresholds(double factor) const;
+  /// The nodes whose bounds have jumped.
+  std::vector<char> jumped(const Vector &x) const;
+  /// With the thresholds of those nodes alone, whatever touches.
+  Laws without_jump(const std::vector<char> &jumped) const;
   /// With bounds that do not follow the pressure.
   Laws frozen(const Vector &bounds) const;
 };

@@ -121,6 +121,22 @@ Laws Laws::with_thresholds(double factor) const {
   return result;
 }
 
+std::vector<char> Laws::jumped(const Vector &x) const {
+  std::vector<char> result(nodes);
+  for (Index i = 0; i < nodes; ++i)
+    result[i] = x[i] > 0 && of[i].jumps() ? 1 : 0;
+  return result;
+}
+
+Laws Laws::without_jump(const std::vector<char> &jumped) const {
+  Laws result = *this;
+  for (Index i = 0; i < nodes; ++i) {
+    if (of[i].jumps()) result.of[i] = of[i].with_threshold(jumped[i]);
+    result.of[i].only_in_contact = false;
+  }
+  return result;
+}
+
 Laws Laws::frozen(const Vector &bounds) const {
   Laws result = *this;
   for (Index i = 0; i < nodes; ++i)
