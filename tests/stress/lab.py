@@ -145,9 +145,10 @@ def sizes(references):
     return {ENERGY: max(abs(row[ENERGY]) for row in references), **{name: force for name in FORCES}}
 
 
-def shape_deviation(answers, references, of=None):
+def shape_deviation(answers, references, of=None, steps=()):
     """Largest difference of u, of multipliers, of peaks and of widths, each relative to its largest value of all
-    references, and which of them it is of. `of`: of these alone."""
+    references, and which of them it is of. `of`: of these alone. `steps`: by how much widths may be off, that
+    count nodes."""
     kinds = [("u", "u"), *(("multipliers", name) for name in references[0] if name.startswith(MULTIPLIERS)),
              *(("peaks", name) for name in PEAKS), *(("widths", name) for name in WIDTHS)]
     size, apart, worst = {}, {}, (0.0, "")
@@ -160,8 +161,9 @@ def shape_deviation(answers, references, of=None):
             size[kind] = max(size.get(kind, 0), np.max(np.abs(reference[name]), initial=0))
             if isinstance(answer.get(name, ""), str):
                 continue
+            off = np.max(np.abs(answer[name] - reference[name]), initial=0)
             apart[name] = kind, np.maximum(apart.get(name, (kind, 0))[1],
-                                           np.max(np.abs(answer[name] - reference[name]), initial=0))
+                                           np.maximum(off - dict(steps).get(name, 0), 0))
     for name, (kind, most) in apart.items():
         share = most / size[kind] if size[kind] > 0 else (0.0 if most == 0 else float("inf"))
         if not share <= worst[0]:

@@ -6,7 +6,8 @@ import shutil
 import subprocess
 
 import case_tree
-from lab import ENERGY, FORCES, Refused, check_residual, deviation, fields, judge, read_table, shape_deviation, sizes
+from lab import (ENERGY, FORCES, WIDTHS, Refused, check_residual, deviation, fields, judge, read_table, shape_deviation,
+                 sizes)
 
 # Numbers to which loads and imposed displacements can be scaled: what is zero or scaled by t.
 DATA = {"membrane_obstacle": ("load", "frame_height", "frame_tilt"), "two_disks": ("indentation", "initial_gap"),
@@ -86,6 +87,9 @@ class Models:
                           if not isinstance(value, (str, float))}
         answers, told = self.ask(base, self.queries), read_table(base / "verify/summary.csv")[0]
         self.apart = deviation(answers, self.truth, of=self.of)
+        # What the model prints of a width that counts nodes is a node: one at each end.
+        self.steps = {name: 2 * max(answer[name + "_error"] for answer in answers)
+                      for name in WIDTHS if isinstance(answers[0].get(name + "_error", ""), float)}
         self.shape = max(shape_deviation(answers, self.truth, self.looked_at), (told["u_max"], "u over V"),
                          (told.get("lambda_max", 0) if self.looked_at is None else 0, "multipliers over W"))
 
@@ -107,7 +111,7 @@ class Models:
         queries, truth = queries or self.queries, truth or self.truth
         scale, answers = sizes([*self.truth, *truth]), self.ask(run, queries)
         return (deviation(answers, truth, scale, self.of), tolerance or max(3 * self.apart, 1e-6),
-                shape_deviation(answers, truth, self.looked_at), max(3 * self.shape[0], tolerance or 1e-6))
+                shape_deviation(answers, truth, self.looked_at, self.steps), max(3 * self.shape[0], tolerance or 1e-6))
 
     def honest(self, run, queries, truth, scale):
         """Of a model that must err: by how much, and by how much verify says."""
