@@ -49,8 +49,7 @@ Sweep snapshots(const Scene &scene, const std::string &directory) {
 /// (2.34). The training grid holds the corners of the box: no ring around these nodes is needed.
 ReducedBases bases_of(Problem &problem, const std::vector<Sample> &samples) {
   ReducedBases bases;
-  StageTable stages{{stage::pod, "displacements to 1e-6"}};
-  add_modes(problem, samples, {.tolerance = 1e-6}, bases, stages);
+  add_modes(problem, samples, {.tolerance = 1e-6}, bases);
   const Operators &op = problem.assemble(box_centre(problem.scene().parameters));
   bases.cone =
       build_cone(multipliers_of(samples), problem.w_product(), {.ring = 0}, holding(problem, op));

@@ -10,6 +10,7 @@
 #include "rbvi/mor/nodal_dual_basis.hpp"
 #include "rbvi/mor/operator_entries.hpp"
 #include "rbvi/mor/stiffness_change.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/par/columns.hpp"
 
 #include <algorithm>

@@ -78,12 +78,12 @@ Matrix orthonormal_dual_basis(const Matrix &generators, const SparseMatrix &w_pr
 
 Matrix supremizer_coordinates(const RieszSpace &space, const SparseMatrix &b_contact,
                               const Matrix &x) {
-  constexpr double round_off = 1e-9;
+  constexpr double of_multiples = 1e-9;
   Matrix forces = b_contact.transpose() * x;
   if (!space.dofs.empty()) forces = forces(space.dofs, Eigen::all).eval();
   if (space.loads.size() > 0) {
     const double scale = forces.cwiseProduct(space.loads).sum() / space.loads.squaredNorm();
-    if (!((forces - scale * space.loads).norm() <= round_off * forces.norm()))
+    if (!((forces - scale * space.loads).norm() <= of_multiples * forces.norm()))
       throw failure("supremizers of other multipliers than the loads");
     return scale * space.factor.transpose();
   }

@@ -2,7 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
-#include "rbvi/mor/high_fidelity_pair.hpp"
+#include "rbvi/mor/reduction.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/contact_cost.hpp"
 #include "rbvi/solve/scaled_part.hpp"
@@ -51,22 +51,17 @@ std::string factorisation_text(const Setup &setup) {
 
 // Fitted to what `rbvi bench -bench_growth` measured on all cases, on meshes from 3 400 to 91 000
 // dofs: right to a factor of two or so.
-constexpr double of_number = 8;          ///< bytes
-constexpr double mesh_bytes = 1500;      ///< of a problem, for a dof: mesh, numbers, terms
-constexpr double used_once = 12e6;       ///< bytes: libraries, buffers
-constexpr double matrix_entry = 3;       ///< numbers: in A and in the product of V
-constexpr double mesh_seconds = 5e-6;    ///< for a dof
-constexpr double factor_seconds = 1e-8;  ///< for an entry of a factor
-constexpr double solve_seconds = 5e-10;  ///< likewise, one right-hand side
-constexpr double column_seconds = 2e-10; ///< likewise, of many at once
-constexpr double newton_solves = 80;     ///< by Nitsche's method, for a sample
-constexpr double at_once = 128;          ///< right-hand sides
-constexpr double axis_points = 9;        ///< of the grid of the condensed operator
-constexpr double most_terms = 100;       ///< of that operator; twice what A is interpolated by
-constexpr double most_modes = 200;       ///< however many samples
-constexpr double few_responses = 150;    ///< where those to answers alone join the modes
-constexpr double most_buffered = 1e7;    ///< numbers: while fields are written
-constexpr double moving_part = 1 / 8.0;  ///< of the multipliers, which a cone has hats for
+constexpr double of_number = 8;         ///< bytes
+constexpr double mesh_bytes = 1500;     ///< of a problem, for a dof: mesh, numbers, terms
+constexpr double used_once = 12e6;      ///< bytes: libraries, buffers
+constexpr double matrix_entry = 3;      ///< numbers: in A and in the product of V
+constexpr double mesh_seconds = 5e-6;   ///< for a dof
+constexpr double solve_seconds = 5e-10; ///< likewise, one right-hand side
+constexpr double newton_solves = 80;    ///< by Nitsche's method, for a sample
+constexpr double axis_points = 9;       ///< of the grid of the condensed operator
+constexpr double most_modes = 200;      ///< however many samples
+constexpr double most_buffered = 1e7;   ///< numbers: while fields are written
+constexpr const char *coarser_mesh = "a coarser mesh (-mesh_refine, -mesh)";
 
 /// Nonzeros of a row of A, on average.
 double row_entries(const Scene &scene) {
@@ -86,64 +81,28 @@ double largest(MPI_Comm comm, double value) {
   return value;
 }
 
-/// Free parameters that A is sampled over.
-int axes_of(const Scene &scene) {
-  return static_cast<int>(parameters_beside_common(scene.a, scene.parameters).size());
-}
-
-bool condenses(const OfflineOptions &options) {
-  return options.reduce.multipliers.reduction == MultiplierReduction::condensed;
-}
-
-/// Functions that join the modes: responses, or supremizers of as many generators.
-double joining(const OfflineOptions &options, const RunSizes &size, double samples) {
-  const Scene &scene = options.scene;
-  const ReduceOptions &reduce = options.reduce;
-  if (reduce.multipliers.reduction == MultiplierReduction::none) return 0;
-  if (condenses(options)) {
-    if (reduce.condensed.responses == 0) return 0;
-    if (axes_of(scene) > 0)
-      return size.contact * (split_sum(scene.a, scene.parameters).mapped.empty() ? 1 : 4);
-    return size.contact * size.dofs > reduce.condensed.large_fields ? few_responses
-                                                                    : size.contact / 2;
-  }
-  if (reduce.enrichment == Enrichment::decorrelated) return 0;
-  const bool hats = reduce.cone.type >= ConeType::nodal;
-  const double coarser = std::pow(2, scene.dim * reduce.cone.level);
-  return std::min(hats ? size.multipliers * moving_part / coarser : samples, size.multipliers);
-}
-
 double snapshot_seconds(const Scene &scene, const RunSizes &size, double samples) {
   const bool each = !constant_stiffness(scene) && !size.eliminated;
   return std::ceil(samples * size.group / size.ranks) * factor_entries(scene, size.dofs) *
          (size.solves * solve_seconds + (each ? factor_seconds : 0));
 }
 
-const char *made_smaller_by(const std::string &stage) {
-  if (stage == stage::mesh.text || stage == stage::distributed_mesh.text)
-    return "a coarser mesh (-mesh_refine, -mesh)";
-  if (stage == stage::snapshots.text)
-    return "more ranks for a solve (-sweep_ranks_per_solve), -hf_contact eliminated, or a coarser "
-           "mesh (-mesh_refine, -mesh)";
-  if (stage == stage::condensation.text)
-    return "-response_tolerance 0, -multiplier_reduction cone where there is no friction, or a "
-           "coarser mesh (-mesh_refine, -mesh)";
-  if (stage != stage::interpolation.text && stage != stage::pod.text)
-    return "fewer samples (-train), -cone_level where multipliers have hat functions, or a coarser "
-           "mesh (-mesh_refine, -mesh)";
-  return "fewer samples (-train) or a coarser mesh (-mesh_refine, -mesh)";
-}
+/// The stage that takes most on a node, its bytes there, and what makes it smaller.
+struct LargestStage {
+  std::string name;
+  double bytes = 0;
+  const char *smaller = "";
+};
 
-/// The stage that takes most on a node, and its bytes there.
-std::pair<std::string, double> largest_stage(const Foresight &foreseen,
-                                             const std::vector<StageTable> &stages, int ranks) {
-  std::pair<std::string, double> most{"", 0};
+LargestStage largest_stage(const Foresight &foreseen, const std::vector<StageTable> &stages,
+                           int ranks) {
+  LargestStage most;
   for (const StageTable &table : stages)
     for (const StageRow &row : table) {
       const auto found = foreseen.find(row.stage.text);
       if (found == foreseen.end() || !will_run(table, row.stage)) continue;
       const double bytes = found->second.first + (ranks - 1) * found->second.others;
-      if (bytes > most.second) most = {row.stage.text, bytes};
+      if (bytes > most.bytes) most = {row.stage.text, bytes, found->second.smaller};
     }
   return most;
 }
@@ -223,59 +182,65 @@ RunSizes sizes_of(MPI_Comm world, const Problem &problem, const HfOptions &optio
   return size;
 }
 
-Foresight foresee(const OfflineOptions &options, const std::vector<Mu> &training,
-                  const RunSizes &size) {
+namespace {
+
+/// Of the reduction.
+ReductionSize reduction_size(const OfflineOptions &options, const std::vector<Mu> &training,
+                             const RunSizes &run) {
   const Scene &scene = options.scene;
   const ParameterSpace &space = scene.parameters;
   const auto count = [](const auto &list) { return static_cast<double>(list.size()); };
-  const double n = size.dofs, m = size.multipliers, c = size.contact, ranks = size.ranks;
-  const double samples = count(training), joined = joining(options, size, samples);
-  const double modes = std::min(n, std::min(samples, most_modes) + joined);
-  const double entries = n * row_entries(scene), factor = factor_entries(scene, n);
-  const double of_a = count(interpolated_samples(scene.a, space, training)),
-               of_f = count(interpolated_samples(scene.f, space, training)),
-               of_b = separable_contact(scene) ? 11 * samples * m : 0,
-               terms = count(split_sum(scene.a, space).exact) + std::min(of_a, most_terms / 2);
-  const int axes = axes_of(scene);
-  const double points = std::pow(axis_points, axes), square = std::pow(std::max(c, m), 2);
-  // Numbers of a rank: A^-1 of many right-hand sides, generators with their responses, the model.
-  const auto columns = [&](double all) { return factor + 2 * n * std::min(at_once, all / ranks); };
-  const double generators = columns(joined) + 5 * m * joined;
-  const double model = n * modes / ranks + terms * modes * modes +
-                       (condenses(options) ? square * std::min(points, most_terms) : 0);
-  const double held = size.held + used_once + (matrix_entry * entries / size.group) * of_number;
+  ReductionSize size{.samples = count(training),
+                     .dofs = run.dofs,
+                     .contact = run.contact,
+                     .multipliers = run.multipliers,
+                     .ranks = static_cast<double>(run.ranks),
+                     .axes = count(parameters_beside_common(scene.a, space)),
+                     .points =
+                         std::pow(axis_points, count(parameters_beside_common(scene.a, space))),
+                     .square = std::pow(std::max(run.contact, run.multipliers), 2),
+                     .entries = run.dofs * row_entries(scene),
+                     .factor = factor_entries(scene, run.dofs),
+                     .of_a = count(interpolated_samples(scene.a, space, training)),
+                     .of_f = count(interpolated_samples(scene.f, space, training)),
+                     .of_b = separable_contact(scene) ? 11 * count(training) * run.multipliers : 0};
+  const ReductionWay &way = way_of(scene, options.reduce.multipliers.reduction);
+  const Joining joining = way.joining(scene, options.reduce, size);
+  size.joined = joining.functions;
+  size.modes = std::min(size.dofs, std::min(size.samples, most_modes) + size.joined);
+  const double terms = count(split_sum(scene.a, space).exact) + std::min(size.of_a, most_terms / 2);
+  size.model =
+      size.dofs * size.modes / size.ranks + terms * size.modes * size.modes + joining.stored;
+  return size;
+}
+
+} // namespace
+
+Foresight foresee(const OfflineOptions &options, const std::vector<Mu> &training,
+                  const RunSizes &run) {
+  const Scene &scene = options.scene;
+  const ReductionSize size = reduction_size(options, training, run);
+  const double held = run.held + used_once + (matrix_entry * size.entries / run.group) * of_number;
   Foresight all;
-  const auto each_rank = [&](StageName stage, double numbers, double seconds = 0) {
-    all[stage.text] = {held + of_number * numbers, held + of_number * numbers, seconds};
+  const auto add = [&](StageName stage, const StageNeed &need, const char *smaller) {
+    all.emplace(stage.text, Foreseen{held + of_number * need.on_first,
+                                     held + of_number * need.numbers, need.seconds, smaller});
   };
-  const double mesh = size.before + mesh_bytes * n;
-  all[stage::mesh.text] = {mesh, mesh, mesh_seconds * n};
-  const bool multigrid = size.eliminated && scene.components == 1;
-  each_rank(stage::snapshots,
-            factor * (multigrid ? 0.5 : 1) / size.group + (size.eliminated ? 0 : 2 * c * c),
-            snapshot_seconds(scene, size, samples));
-  each_rank(stage::distributed_mesh, mesh_bytes / of_number * n);
-  each_rank(stage::interpolation, 2 * ((of_a * entries / 2 + of_f * n) / ranks + of_b));
-  each_rank(stage::pod, 4 * n * samples / ranks + 6 * samples * samples);
-  each_rank(stage::condensation,
-            columns(c) + (axes > 0 ? 6 : 2) * n * modes / ranks +
-                square * (axes > 0 ? std::min(points, 3 * most_terms) : 3),
-            axes > 0 ? 0 : factor * (factor_seconds + c / ranks * column_seconds));
-  each_rank(stage::multipliers, 3 * m * m);
-  each_rank(stage::cone, generators);
-  each_rank(stage::riesz, generators);
-  each_rank(stage::infsup_tolerance,
-            iterates_constants(m, n) ? 4 * factor / ranks : factor + 4 * c * c);
-  each_rank(stage::pga, generators + 1.5 * n * joined / ranks);
-  each_rank(stage::contact_curve, 6 * m * samples * samples);
-  each_rank(stage::projection, model);
-  for (const StageName stage : {stage::self_check, stage::writing}) {
-    each_rank(stage, n * modes / ranks); // and the whole model on the first rank, then its fields
-    const bool writes = stage.text == stage::writing.text;
-    all[stage.text].first =
-        held +
-        of_number * (model + (writes ? n * modes + std::min(2 * n * modes, most_buffered) : 0));
-  }
+  const double mesh = run.before + mesh_bytes * size.dofs;
+  all[stage::mesh.text] = {mesh, mesh, mesh_seconds * size.dofs, coarser_mesh};
+  const bool multigrid = run.eliminated && scene.components == 1;
+  const double condensed = run.eliminated ? 0 : 2 * size.contact * size.contact;
+  const double solved = size.factor * (multigrid ? 0.5 : 1) / run.group + condensed;
+  add(stage::snapshots, {solved, solved, snapshot_seconds(scene, run, size.samples)},
+      "more ranks for a solve (-sweep_ranks_per_solve), -hf_contact eliminated, or a coarser mesh "
+      "(-mesh_refine, -mesh)");
+  add(stage::distributed_mesh, {mesh_bytes / of_number * size.dofs}, coarser_mesh);
+  for (const ReductionStage &stage : stages_of(scene, options.reduce))
+    if (stage.need != nullptr) add(stage.name, stage.need(size), stage.smaller);
+  const double fields = size.dofs * size.modes; // after the model of the first rank
+  add(stage::writing,
+      {fields / size.ranks, size.model + fields + std::min(2 * fields, most_buffered)},
+      coarser_hats);
   return all;
 }
 
@@ -288,23 +253,22 @@ NodeMemory room_for(MPI_Comm world) {
 
 std::string memory_text(const Foresight &foreseen, const std::vector<StageTable> &stages,
                         const NodeMemory &room) {
-  const auto [stage, bytes] = largest_stage(foreseen, stages, room.ranks);
+  const auto [stage, bytes, smaller] = largest_stage(foreseen, stages, room.ranks);
   std::string text = "The most memory that a stage takes is about " + bytes_text(bytes) +
                      " for the " + counted(room.ranks, "rank") + " of a node (" + stage + "), of " +
                      bytes_text(room.bytes);
-  if (bytes > room.bytes)
-    text.append(": it may not fit; smaller by ").append(made_smaller_by(stage));
+  if (bytes > room.bytes) text.append(": it may not fit; smaller by ").append(smaller);
   return text;
 }
 
 void check_memory(const Foresight &foreseen, const std::vector<StageTable> &stages,
                   const NodeMemory &room) {
-  const auto [stage, bytes] = largest_stage(foreseen, stages, room.ranks);
+  const auto [stage, bytes, smaller] = largest_stage(foreseen, stages, room.ranks);
   constexpr double right_to = 2; // what is foreseen: more than that is refused
   if (bytes <= right_to * room.bytes) return;
   throw bad_input("the stage '" + stage + "' would take about " + bytes_text(bytes) + " for the " +
                   counted(room.ranks, "rank") + " of a node, where " + bytes_text(room.bytes) +
-                  " can be had: use " + made_smaller_by(stage));
+                  " can be had: use " + smaller);
 }
 
 } // namespace rbvi

@@ -6,6 +6,7 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/fem/check_scene.hpp"
+#include "rbvi/mor/reduction.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/tool/case_file.hpp"
 #include "rbvi/tool/cases.hpp"
@@ -196,10 +197,11 @@ ToolOptions read_values(const std::vector<std::string> &names, const GivenCase &
   options.valid = options.scene.validation;
   read_table(table, options);
   MultiplierReduction &reduction = options.reduce.multipliers.reduction;
-  reduction = reduction_of(options.scene, reduction);
+  const ReductionWay &way = way_of(options.scene, reduction);
+  reduction = way.reduction;
   check_rules(options);
   if (!is_of(use::online, options)) options.online_method = OnlineMethod::exact;
-  if (keeps_law(reduction) && !is_given("cone_type"))
+  if (way.law && !is_given("cone_type"))
     options.reduce.cone.type = ConeType::mcpg; // hybrid has functions of either sign
   return options;
 }

@@ -4,6 +4,7 @@
 #include "kinds.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/mor/reduction.hpp"
 
 namespace rbvi {
 
@@ -135,16 +136,10 @@ std::vector<Option> of_separation(ReduceOptions &o) {
 }
 
 std::vector<Option> of_law(ReduceOptions &o) {
-  const std::vector<std::string> reductions{
-      "condensed on rigid supports and between two bodies, otherwise cone",
-      "a cone of functions (-cone_type), made stable by supremizers; without friction",
-      "not reduced: the law holds exactly at every node (or mirrored pair of nodes), and the body "
-      "enters by its condensed operator B A^-1 B^T, interpolated where A varies; the most accurate "
-      "by orders of magnitude",
-      "the published method: a cone (-cone_type mcpg) for lambda_n, modes for lambda_tau, "
-      "supremizers, the friction bound at nodes chosen greedily (Algorithm 3), B^n and B^tau "
-      "interpolated apart unless B is a multiple of one form; without friction the cone and B^n "
-      "alone"};
+  std::vector<std::string> reductions{
+      "condensed on rigid supports and between two bodies, otherwise cone"};
+  for (const ReductionWay &way : reduction_ways())
+    if (way.reduction != MultiplierReduction::none) reductions.emplace_back(way.says);
   return {
       kept(number("condensed_tolerance", relative_error, o.condensed.tolerance,
                   "relative error that the condensed operator may have as a function of mu")),

@@ -2,6 +2,7 @@
 
 #include "kinds.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/mor/reduction.hpp"
 #include "rbvi/solve/methods.hpp"
 #include "rbvi/tool/run_directory.hpp"
 
@@ -20,6 +21,10 @@ namespace {
 template <FrictionLaw law> bool has_law(const OfflineOptions &options) {
   return std::ranges::any_of(options.scene.contacts,
                              [](const ContactRecipe &c) { return c.friction == law; });
+}
+
+const ReductionWay &way_for(const OfflineOptions &options) {
+  return way_of(options.scene, options.reduce.multipliers.reduction);
 }
 
 bool has_online_method(const OfflineOptions &options) {
@@ -55,13 +60,9 @@ const Use uzawa{&multipliers,
 const Use following{&multipliers, [](const OfflineOptions &o) { return follows_state(o.scene); },
                     "contact that follows the displacement: set -kinematics large"};
 
-const Use dual_basis{&multipliers,
-                     [](const OfflineOptions &o) {
-                       return o.reduce.multipliers.reduction != MultiplierReduction::condensed;
-                     },
+const Use dual_basis{&multipliers, [](const OfflineOptions &o) { return way_for(o).dual_basis; },
                      "-multiplier_reduction cone or collocated"};
-const Use law{&multipliers,
-              [](const OfflineOptions &o) { return keeps_law(o.reduce.multipliers.reduction); },
+const Use law{&multipliers, [](const OfflineOptions &o) { return way_for(o).law; },
               "-multiplier_reduction condensed or collocated"};
 const Use hats{
     &multipliers,

@@ -3,7 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/model/online.hpp"
 #include "rbvi/mor/nodal_dual_basis.hpp"
-#include "rbvi/mor/reduce.hpp"
+#include "rbvi/mor/reduction.hpp"
 #include "reduced.hpp"
 #include "tests/catalogue.hpp"
 
@@ -44,11 +44,13 @@ ReduceOptions law_within(double ring) {
 
 /// The model of the nodes near contact of the samples, whether or not its queries are answered.
 ReducedModel near_samples(Reduced &r, const ReduceOptions &options) {
-  StageTable stages = reduction_stages(r.problem.scene(), options);
-  r.affine = separate(r.problem, r.mus(), options.eim);
-  const ReducedBases bases = build_law_bases(r.problem, r.samples, options, r.affine, stages);
-  EXPECT_GT(bases.dropped, 0);
-  return project(r.problem, r.samples, r.affine, bases);
+  const Scene &scene = r.problem.scene();
+  Reduction made;
+  Reducing at = start_reducing(r.problem, r.samples, options, made);
+  run_stages(stages_of(scene, options), at, "", stage::projection.text);
+  EXPECT_GT(made.bases.dropped, 0);
+  r.affine = std::move(made.affine);
+  return project(r.problem, r.samples, r.affine, made.bases);
 }
 
 TEST(NearContact, KeepsWhatIsWithinTheRing) {

@@ -5,7 +5,7 @@
 #include "rbvi/core/largest.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
 #include "rbvi/model/law_problem.hpp"
-#include "rbvi/mor/reduce.hpp"
+#include "rbvi/mor/reduction.hpp"
 #include "rbvi/study/separation_errors.hpp"
 #include "tests/catalogue.hpp"
 
@@ -52,10 +52,14 @@ struct Pair {
 };
 
 Pair with_both(Reduced &r, const ReduceOptions &options, const RowOptions &rows) {
-  StageTable stages = reduction_stages(r.problem.scene(), options);
+  const Scene &scene = r.problem.scene();
   const AffineOperators joint = separate(r.problem, r.mus(), options.eim);
   Pair pair{{}, {}, separate(r.problem, r.mus(), options.eim, rows)};
-  const ReducedBases bases = build_law_bases(r.problem, r.samples, options, joint, stages);
+  Reduction made;
+  made.affine = separate(r.problem, r.mus(), options.eim);
+  Reducing at = start_reducing(r.problem, r.samples, options, made);
+  run_stages(stages_of(scene, options), at, stage::pod.text, stage::projection.text);
+  const ReducedBases &bases = made.bases;
   pair.joint = project(r.problem, r.samples, joint, bases);
   pair.apart = project(r.problem, r.samples, pair.separated, bases);
   (void)collocate(pair.joint, r.problem, r.samples, options.gcns);

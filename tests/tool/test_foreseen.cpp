@@ -1,6 +1,7 @@
 // What stages will take, against what they took; runs that do not fit are refused.
 #include "../core/refuses.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/mor/reduction.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/tool/offline_run.hpp"
 #include "tests/catalogue.hpp"
@@ -103,7 +104,8 @@ INSTANTIATE_TEST_SUITE_P(
 /// Ranks of a node share its memory.
 TEST(Memory, OfAllRanksOfANode) {
   const std::vector<StageTable> stages{{{stage::pod, "modes"}}};
-  const Foresight foreseen{{stage::pod.text, {5e8, 3e8}}, {stage::cone.text, {9e9, 9e9}}};
+  const Foresight foreseen{{stage::pod.text, {5e8, 3e8, 0, fewer_samples}},
+                           {stage::cone.text, {9e9, 9e9}}};
   EXPECT_NO_THROW(check_memory(foreseen, stages, {3, 0.6e9}));
   EXPECT_NE(memory_text(foreseen, stages, {3, 0.6e9})
                 .find("it may not fit; smaller by fewer samples (-train)"),

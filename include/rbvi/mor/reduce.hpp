@@ -97,10 +97,6 @@ struct ReducedBases {
   double infsup_tolerance = 0; ///< of the greedy, where ReduceOptions asks for it
 };
 
-/// What `automatic` means for a scene, none by Nitsche's method; else `chosen`.
-MultiplierReduction reduction_of(const Scene &scene, MultiplierReduction chosen);
-/// Whether a reduction is one of the law at nodes (NodalLaw), not of a pair of spaces.
-bool keeps_law(MultiplierReduction reduction);
 /// Throws bad_input for reductions of the multipliers that a load of the scene, its law of
 /// friction, its B or the type of the cones does not allow.
 void check_reduction(const Scene &scene, const ReduceOptions &options);
@@ -122,40 +118,9 @@ struct Reduction {
 Reduction reduce(Problem &problem, const std::vector<Sample> &samples,
                  const ReduceOptions &options);
 
-/// The law at nodes: POD, the condensed operator, and, where the multipliers are
-/// reduced further, their functions and (collocated) the supremizers of the pair. Collective.
-ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &samples,
-                             const ReduceOptions &options, const AffineOperators &affine,
-                             StageTable &stages);
-
-/// The model of Nitsche's method. Collective.
-void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
-                    const ReduceOptions &options, Reduction &result);
-
-/// A reduced pair of spaces: POD, the dual basis, supremizers. `b_is_scaled`: b depends on mu by a
-/// factor only, so one training mu serves the supremizers. Collective.
-ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
-                         const ReduceOptions &options, bool b_is_scaled, StageTable &stages);
-
 /// `collocated` alone: the collocation nodes of a model that has none yet, into it. Serial.
 Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sample> &samples,
                const GcnsOptions &options);
-
-/// The law at nodes, with the condensed operator: the training multipliers that
-/// `project` has left in the model become what a query starts from. Serial.
-void add_starts(ReducedModel &model, const Problem &problem);
-/// By the answers of `model`: lets the responses that bases.awaiting waits for join the modes, or
-/// leaves of those that did what displacements need, where these cost more than the law; then the
-/// model is projected again. Collective.
-void compress_responses(Problem &problem, const std::vector<Sample> &samples,
-                        const AffineOperators &affine, ReducedBases &bases, ReducedModel &model,
-                        StageTable &stages);
-
-/// Adds supremizers of the greedy, or the span of all of them, behind the modes of `bases`. `dual`:
-/// functions that span the dual space, dual dofs x any number. Collective.
-void add_supremizers(Problem &problem, const std::vector<ContactPoint> &training,
-                     const ReduceOptions &options, Matrix dual, ReducedBases &bases,
-                     StageTable &stages);
 
 /// The middle of the box. Free parameters.
 Mu box_centre(const ParameterSpace &space);
@@ -163,9 +128,9 @@ Mu box_centre(const ParameterSpace &space);
 /// Whether every corner of the box of the free parameters is a training point.
 bool holds_corners(const ParameterSpace &space, const std::vector<Mu> &training);
 
-/// POD of the displacements, as the stage "POD". Collective.
+/// POD of the displacements. Collective.
 void add_modes(Problem &problem, const std::vector<Sample> &samples, const PodOptions &options,
-               ReducedBases &bases, StageTable &stages);
+               ReducedBases &bases);
 
 /// Multipliers as columns. Throws failure where there is no sample, or no contact in any.
 Matrix multipliers_of(const std::vector<Sample> &samples);

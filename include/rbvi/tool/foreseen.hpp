@@ -27,6 +27,7 @@ StageTable closing_stages();
 struct Foreseen {
   double first = 0, others = 0; ///< bytes: largest resident set of the first rank, of each other
   double seconds = 0;           ///< 0: hangs on what the stages before it find
+  const char *smaller = "";     ///< what makes it smaller
 };
 /// By the names of stages.
 using Foresight = std::map<std::string, Foreseen>;

@@ -1,0 +1,191 @@
+// The law of contact and friction at every node: the body behind it is its condensed operator.
+#include "rbvi/core/text.hpp"
+#include "rbvi/model/affine_coefficients.hpp"
+#include "rbvi/model/law_problem.hpp"
+#include "rbvi/mor/answered_responses.hpp"
+#include "rbvi/mor/nodal_dual_basis.hpp"
+#include "shared_stages.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace rbvi {
+
+namespace {
+
+StageRow condensation_row(const ReduceOptions &options, const Reduction *made) {
+  if (options.multipliers.reduction == MultiplierReduction::collocated &&
+      !options.multipliers.exact)
+    return {stage::condensation, "not wanted (-multiplier_exact no)", StageKind::skipped};
+  if (made == nullptr)
+    return {stage::condensation,
+            "the condensed operator, at the Chebyshev points of the parameters of A to " +
+                short_number(options.condensed.tolerance)};
+  const CondensedOperator &condensed = made->bases.condensed;
+  std::string what = counted(made->bases.nodal_dual.cols(), "multiplier") +
+                     (made->bases.dropped > 0 ? " near contact" : "") + ", " +
+                     counted(made->bases.responses, "response") + ", " +
+                     counted(made->bases.factorisations, "factorisation") + ", " +
+                     counted(condensed.terms.cols(), "term");
+  if (!condensed.axes.empty()) what += ", error " + short_number(condensed.error);
+  return {stage::condensation, what};
+}
+
+/// What `condense` makes of the nodes' dual basis.
+void make_condensed(Reducing &at) {
+  Problem &problem = at.problem;
+  ReducedBases &bases = at.made.bases;
+  const Scene &scene = problem.scene();
+  const bool condensed = at.options.multipliers.reduction != MultiplierReduction::collocated;
+  const std::vector<Mu> training = parameters_of(at.samples);
+  const Matrix &multipliers = at.multipliers;
+  const Matrix &nodal = nodal_dual_of(at);
+  CondensedLoads loads = condensed_loads(problem, at.made.affine, training, multipliers, nodal);
+  const bool awaits = condensed && awaits_answers(problem, loads, at.options.condensed);
+  LinearBasis *modes = condensed && !awaits ? &bases.pod.basis : nullptr;
+  Condensation made = condense(problem, loads, expand(scene.parameters, training.front()),
+                               at.options.condensed, modes, nodal_coefficients(nodal, multipliers));
+  bases.condensed = std::move(made.condensed);
+  bases.responses = made.responses;
+  if (!scene.f.empty())
+    bases.responses += add_load_responses(problem, at.made.affine, training, bases.pod.basis);
+  bases.factorisations = made.factorisations;
+  if (awaits) bases.awaiting = std::move(loads);
+}
+
+StageNeed condensation_need(const ReductionSize &size) {
+  const auto &[samples, dofs, contact, multipliers, ranks, axes, points, square, entries, factor,
+               of_a, of_f, of_b, joined, modes, model] = size;
+  const bool varies = axes > 0;
+  return {.numbers = size.responses(contact) + (varies ? 6 : 2) * dofs * modes / ranks +
+                     square * (varies ? std::min(points, 3 * most_terms) : 3),
+          .seconds = varies ? 0 : factor * (factor_seconds + contact / ranks * column_seconds)};
+}
+
+/// The training multipliers that `project` has left in the model become what a query starts from.
+void add_starts(ReducedModel &model, const Problem &problem) {
+  Matrix starts = model.contact.law->starts;
+  LawProblem of_model(model, problem.scene(), problem.contact());
+  for (Index p = 0; p < starts.cols(); ++p) {
+    const Vector mu = model.contact.law->starts_mu.col(p);
+    ReducedAnswer unused;
+    const LawAtMu &law = of_model.at(
+        expand(problem.scene().parameters, {mu.begin(), mu.end()}), unused,
+        model.contact.law->states.size() > 0 ? Vector(model.contact.law->states.col(p)) : Vector());
+    starts.col(p) = of_model.at_all_nodes(law, starts.col(p)).start;
+  }
+  model.contact.law->starts = std::move(starts);
+}
+
+/// By the answers of the model: lets the responses that bases.awaiting waits for join the modes, or
+/// leaves of those that did what displacements need, where these cost more than the law.
+void choose_responses(Reducing &at) {
+  ReducedBases &bases = at.made.bases;
+  if (bases.awaiting) {
+    bases.responses += append_answered_responses(at.problem, *bases.awaiting, at.made.model,
+                                                 answered_tolerance, bases.pod.basis);
+    ++bases.factorisations;
+    bases.awaiting.reset();
+    at.basis_changed = true;
+  } else if (factorises_for_displacements(at.problem, at.made.model)) {
+    const Matrix kept = answered_displacements(at.problem, at.made.model);
+    if (kept.size() == 0) return;
+    rotate(bases.pod.basis, kept);
+    bases.responses = static_cast<int>(kept.cols()) - bases.modes;
+    at.basis_changed = true;
+  }
+}
+
+void project_again(Reducing &at) {
+  if (!std::exchange(at.basis_changed, false)) return;
+  Matrix starts = std::move(at.made.model.contact.law->starts);
+  project_bases(at);
+  at.made.model.contact.law->starts = std::move(starts);
+}
+
+/// All nodes, where contact reaches the edge of those near it.
+void keep_all_nodes(Reducing &at, const std::function<void()> &attempt) {
+  attempt();
+  if (at.unanswered == 0 || at.made.bases.dropped == 0) return;
+  at.options.condensed.ring = std::numeric_limits<double>::infinity();
+  attempt();
+}
+
+StageRow no_pair_row(const Scene &, const ReduceOptions &options, const Reduction *) {
+  return {pair_stages,
+          "the multipliers keep a coefficient at every node" +
+              (options.cone.level > 0
+                   ? " of the mesh refined " + counted(options.cone.level, "time") + " less"
+                   : std::string()) +
+              ": nothing to stabilise",
+          StageKind::skipped};
+}
+
+std::vector<ReductionStage> law_at_nodes(const Scene &scene, const ReduceOptions &) {
+  std::vector<ReductionStage> list = first_stages(scene, separate_jointly);
+  list.push_back(condensation_stage());
+  list.push_back({pair_stages, no_pair_row});
+  add_projection(scene, project_law, list);
+  list.push_back({stage::condensation, nullptr, choose_responses});
+  list.push_back({stage::projection, nullptr, project_again});
+  list.push_back(self_check_stage());
+  return list;
+}
+
+Joining responses_join(const Scene &scene, const ReduceOptions &options,
+                       const ReductionSize &size) {
+  constexpr double few_responses = 150; // where those to answers alone join the modes
+  const double stored = size.square * std::min(size.points, most_terms);
+  if (options.condensed.responses == 0) return {0, stored};
+  if (size.axes > 0)
+    return {size.contact * (split_sum(scene.a, scene.parameters).mapped.empty() ? 1 : 4), stored};
+  const bool large = size.contact * size.dofs > options.condensed.large_fields;
+  return {large ? few_responses : size.contact / 2, stored};
+}
+
+} // namespace
+
+const Matrix &nodal_dual_of(Reducing &at) {
+  ReducedBases &bases = at.made.bases;
+  if (bases.nodal_dual.size() > 0) return bases.nodal_dual;
+  const Matrix &multipliers = at.multipliers;
+  bases.reduction = at.options.multipliers.reduction;
+  bases.mended = at.options.multipliers.exact;
+  bases.nodal_dual = nodal_dual_basis(at.problem, multipliers, at.options.cone.level);
+  if (bases.reduction == MultiplierReduction::collocated || follows_state(at.problem.scene()))
+    return bases.nodal_dual;
+  const std::vector<Index> near = columns_near_contact(at.problem.contact(), bases.nodal_dual,
+                                                       multipliers, at.options.condensed.ring);
+  bases.dropped = bases.nodal_dual.cols() - std::ssize(near);
+  return bases.nodal_dual = bases.nodal_dual(Eigen::all, near).eval();
+}
+
+ReductionStage condensation_stage() {
+  return {stage::condensation,
+          [](const Scene &, const ReduceOptions &options, const Reduction *made) {
+            return condensation_row(options, made);
+          },
+          make_condensed, condensation_need,
+          "-response_tolerance 0, -multiplier_reduction cone where there is no friction, or a "
+          "coarser mesh (-mesh_refine, -mesh)"};
+}
+
+void project_law(Reducing &at) {
+  project_bases(at);
+  if (at.made.bases.condensed.terms.size() > 0) add_starts(at.made.model, at.problem);
+}
+
+const ReductionWay condensed_way{
+    .reduction = MultiplierReduction::condensed,
+    .says = "not reduced: the law holds exactly at every node (or mirrored pair of nodes), and the "
+            "body enters by its condensed operator B A^-1 B^T, interpolated where A varies; the "
+            "most accurate by orders of magnitude",
+    .law = true,
+    .dual_basis = false,
+    .check = [](const Scene &, const ReduceOptions &) {},
+    .stages = law_at_nodes,
+    .joining = responses_join,
+    .repeats = keep_all_nodes};
+
+} // namespace rbvi
