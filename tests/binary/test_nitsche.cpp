@@ -87,6 +87,18 @@ TEST_F(Nitsche, ThePublishedVariantIsVerifiedByThePublishedIteration) {
   EXPECT_TRUE(contains(refused.err, "use one of exact")) << refused.err;
 }
 
+/// Where the method of its queries has no answer the self-check says so, and the model is there.
+TEST_F(Nitsche, TheSelfCheckAsksByTheMethodOfTheModel) {
+  const std::string offline = output_of(
+      rbvi(1, "offline -case " RBVI_CASES
+              "/rigid_disk -variant nitsche_published -arc_edges 40 -train random:8:3 -out run"));
+  EXPECT_TRUE(contains(offline, " without an answer")) << offline;
+  EXPECT_TRUE(contains(offline, "the interpolated problem did not converge")) << offline;
+  const std::string at = "run/model.h5 --mu 1.299227652462021";
+  EXPECT_EQ(shell(rbvi_online(at)).status, 1);
+  EXPECT_GT(value_of(output_of(rbvi_online(at + " --method exact")), "energy"), 0);
+}
+
 TEST_F(Nitsche, BadInputIsSaidInOneLine) {
   const std::string offline = "offline -case disk.yaml -out run ";
   expect_all_refused({{offline + "-hf_method uzawa", "mixed formulation"},
