@@ -35,75 +35,120 @@ const std::vector<std::string> &output_fields() {
   return names;
 }
 
-const std::vector<OutputColumn> &output_columns() {
+namespace {
+
+/// What several contacts make of it together.
+enum class OfContacts { none, sum, largest };
+
+/// A number of Outputs, its column ("": it has none), what it is, its definition.
+struct OutputRow {
+  std::optional<double> Outputs::*value;
+  const char *column;
+  OutputKind kind;
+  OfContacts together;
+  const char *says;
+};
+
+const std::vector<OutputRow> &output_rows() {
   using enum OutputKind;
-  static const std::vector<OutputColumn> columns{
-      {"energy", &Outputs::energy, quantity, "J(u) = a(u, u) / 2 - f(u)"},
-      {"normal_force", &Outputs::normal_force, quantity, "integral of the contact pressure"},
-      {"tangential_force", &Outputs::tangential_force, quantity,
+  using enum OfContacts;
+  static const std::vector<OutputRow> rows{
+      {&Outputs::energy, "energy", quantity, none, "J(u) = a(u, u) / 2 - f(u)"},
+      {&Outputs::normal_force, "normal_force", quantity, sum, "integral of the contact pressure"},
+      {&Outputs::tangential_force, "tangential_force", quantity, sum,
        "integral of the magnitude of the tangential stress"},
-      {"reaction", &Outputs::reaction, quantity, "vertical force of contact on the (first) body"},
-      {"horizontal_reaction", &Outputs::horizontal_reaction, quantity,
+      {&Outputs::reaction, "reaction", quantity, sum,
+       "vertical force of contact on the (first) body"},
+      {&Outputs::horizontal_reaction, "horizontal_reaction", quantity, sum,
        "horizontal force of contact on the (first) body, to the right"},
-      {"contact_measure", &Outputs::contact_measure, measure,
+      {&Outputs::contact_measure, "contact_measure", measure, sum,
        "length or area in contact: weights of the nodes with pressure (of the membrane with "
        "-lumped each by its pressure over the largest beside it)"},
-      {"contact_half_width", &Outputs::contact_half_width, measure, "half of contact_measure"},
-      {"stick_half_width", &Outputs::stick_half_width, measure,
+      {&Outputs::contact_half_width, "contact_half_width", measure, none,
+       "half of contact_measure"},
+      {&Outputs::stick_half_width, "stick_half_width", measure, none,
        "half of the length in contact below the bound of friction"},
-      {"peak_pressure", &Outputs::peak_pressure, quantity,
+      {&Outputs::peak_pressure, "peak_pressure", quantity, largest,
        "largest pressure at a node, wherever it is"},
-      {"centre_pressure", &Outputs::centre_pressure, quantity,
+      {&Outputs::centre_pressure, "centre_pressure", quantity, none,
        "pressure at the middle of a curve in one open piece, from a fit over the inner 12 % of the "
        "contact"},
-      {"min_u", &Outputs::min_u, quantity, "smallest displacement of the whole field"},
-      {"contact_nodes", &Outputs::contact_nodes, check,
+      {&Outputs::min_u, "min_u", quantity, none, "smallest displacement of the whole field"},
+      {&Outputs::contact_nodes, "contact_nodes", check, sum,
        "nodes (-multiplier p0: pairs of edges) with pressure"},
-      {"stick_nodes", &Outputs::stick_nodes, check, "those of them below the bound of friction"},
-      {"ends_in_contact", &Outputs::ends_in_contact, check,
+      {&Outputs::stick_nodes, "stick_nodes", check, sum,
+       "those of them below the bound of friction"},
+      {&Outputs::ends_in_contact, "ends_in_contact", check, sum,
        "ends of the contact boundary, beyond which the body goes on, with pressure (of a membrane "
        "the nodes on the rim of its region)"},
-      {"kkt_residual", &Outputs::kkt_residual, check,
+      {&Outputs::kkt_residual, "kkt_residual", check, none,
        "residual of the problem that was solved, relative"},
-      {"quadrature_residual", &Outputs::quadrature_residual, check,
+      {&Outputs::quadrature_residual, "quadrature_residual", check, none,
        "Nitsche reduced: residual of the integrals over the whole curve"},
-      {"max_penetration", &Outputs::max_penetration, check,
+      {&Outputs::max_penetration, "max_penetration", check, largest,
        "largest penetration at a node, held or not"},
-      {"friction_violation", &Outputs::friction_violation, check,
+      {&Outputs::friction_violation, "friction_violation", check, largest,
        "largest tangential stress beyond its bound"},
-      {"law_error_normal", &Outputs::law_error_normal, check,
+      {&Outputs::law_error_normal, "law_error_normal", check, none,
        "Nitsche: |sigma_n - [P_n]_-| / |sigma_n| over the nodes of all curves (4.83)"},
-      {"law_error_tangential", &Outputs::law_error_tangential, check,
+      {&Outputs::law_error_tangential, "law_error_tangential", check, none,
        "Nitsche: |sigma_tau - [P_tau]_s| / |sigma_tau| over the nodes (4.92)"},
-      {"law_error_tau_over_n", &Outputs::law_error_tau_over_n, check, "the same over |sigma_n|"},
-      {"expected_error_u", &Outputs::expected_error_u, check,
+      {&Outputs::law_error_tau_over_n, "law_error_tau_over_n", check, none,
+       "the same over |sigma_n|"},
+      {&Outputs::expected_error_u, "expected_error_u", check, none,
        "largest error of u that verify measured, relative"},
-      {"expected_error_lambda", &Outputs::expected_error_lambda, check,
+      {&Outputs::expected_error_lambda, "expected_error_lambda", check, none,
        "largest error of the multipliers that verify measured, relative"},
-      {"iterations", &Outputs::iterations, check, "steps of the solver"},
-      {"load_steps", &Outputs::load_steps, check,
+      {&Outputs::iterations, "iterations", check, none, "steps of the solver"},
+      {&Outputs::load_steps, "load_steps", check, none,
        "large deformations: load steps, where steps from the start failed; else 0"},
-      {"contraction", &Outputs::contraction, check,
+      {&Outputs::contraction, "contraction", check, none,
        "large deformations: change in the last step over that in the one before"},
-      {"seconds", &Outputs::seconds, check, "wall time of the answer"}};
+      {&Outputs::seconds, "seconds", check, none, "wall time of the answer"},
+      {&Outputs::free_nodes, "", check, sum, ""},
+      {&Outputs::slip_directions, "", check, largest, ""},
+      {&Outputs::overlap, "", check, none, ""},
+      {&Outputs::gap_error, "", check, none, ""},
+      {&Outputs::strained, "", check, none, ""},
+      {&Outputs::held_nodes, "", check, sum, ""},
+      {&Outputs::held_depth, "", check, largest, ""}};
+  return rows;
+}
+
+} // namespace
+
+const std::vector<OutputColumn> &output_columns() {
+  static const std::vector<OutputColumn> columns = [] {
+    std::vector<OutputColumn> result;
+    for (const OutputRow &row : output_rows())
+      if (*row.column != 0) result.push_back({row.column, row.value, row.kind, row.says});
+    return result;
+  }();
   return columns;
 }
 
+std::vector<std::optional<double>> numbers_of(const Outputs &outputs) {
+  std::vector<std::optional<double>> numbers;
+  for (const OutputRow &row : output_rows())
+    numbers.push_back(outputs.*row.value);
+  return numbers;
+}
+
+void set_numbers(const std::vector<std::optional<double>> &numbers, Outputs &outputs) {
+  if (numbers.size() != output_rows().size()) throw bad_input("another number of outputs");
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    outputs.*output_rows()[i].value = numbers[i];
+}
+
 void add_contact(const Outputs &one, Outputs &all) {
-  const auto combine = [&](std::optional<double> Outputs::*member, bool sum) {
-    std::optional<double> &total = all.*member;
-    if (const std::optional<double> &more = one.*member)
-      total = !total ? *more : sum ? *total + *more : std::max(*total, *more);
-  };
-  for (const auto member : {&Outputs::normal_force, &Outputs::tangential_force, &Outputs::reaction,
-                            &Outputs::horizontal_reaction, &Outputs::contact_measure,
-                            &Outputs::contact_nodes, &Outputs::stick_nodes,
-                            &Outputs::ends_in_contact, &Outputs::free_nodes, &Outputs::held_nodes})
-    combine(member, true);
-  for (const auto member :
-       {&Outputs::peak_pressure, &Outputs::max_penetration, &Outputs::friction_violation,
-        &Outputs::slip_directions, &Outputs::held_depth})
-    combine(member, false);
+  for (const OutputRow &row : output_rows()) {
+    if (row.together == OfContacts::none) continue;
+    std::optional<double> &total = all.*row.value;
+    if (const std::optional<double> &more = one.*row.value)
+      total = !total                            ? *more
+              : row.together == OfContacts::sum ? *total + *more
+                                                : std::max(*total, *more);
+  }
   all.interfaces.push_back(one);
 }
 

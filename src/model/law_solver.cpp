@@ -55,8 +55,7 @@ void NodeLawSolver::displace(ReducedAnswer &answer) {
 std::unique_ptr<QueryMethod> law_solver(const ReducedModel &model, const Scene &scene,
                                         const Contact &contact, const QueryOptions &options) {
   if (!model.contact.law) throw bad_input("the model has no law of contact at nodes");
-  const bool follows = follows_state(contact),
-             on_functions = model.contact.law->basis.normal.size() > 0;
+  const bool follows = follows_state(contact), on_functions = model.contact.law->on_functions();
   if (follows && on_functions)
     throw bad_input("contact that follows the displacement is reduced to a law at all nodes");
   if (on_functions) return std::make_unique<CollocatedSolver>(model, scene, contact, options);

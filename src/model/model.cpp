@@ -78,11 +78,6 @@ void check_model(const ReducedModel &model) {
     list_fields(checker, "fields/", model);
 }
 
-const std::vector<std::string> &multiplier_reduction_names() {
-  static const std::vector<std::string> names{"auto", "cone", "condensed", "collocated"};
-  return names;
-}
-
 ReducedModel leading(const ReducedModel &model, int n, int r) {
   if (n < 1 || n > model.primal_size() || r < std::min(1, model.contact.generators) ||
       r > model.contact.generators)

@@ -78,7 +78,7 @@ QueryOptions with_method(QueryOptions options, const ReducedModel &model, const 
   const auto kept = model.made.settings.find("online_method");
   if (!options.method)
     options.method = online_method(kept == model.made.settings.end() ? "exact" : kept->second);
-  const bool on_functions = model.contact.law && model.contact.law->basis.normal.size() > 0;
+  const bool on_functions = model.contact.law && model.contact.law->on_functions();
   if (options.method == OnlineMethod::uzawa && !on_functions)
     throw bad_input("Uzawa's method is for models by -multiplier_reduction collocated: ask this "
                     "one by the method exact");

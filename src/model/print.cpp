@@ -127,8 +127,7 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   print_parameters(out, model.scene.parameters);
   print_failed(out, model);
   label(out, "modes") << model.body.modes << '\n';
-  const bool joined =
-      model.contact.law && model.contact.law->reduction == MultiplierReduction::condensed;
+  const bool joined = model.contact.law && !model.contact.law->on_functions();
   label(out, joined ? "responses" : "supremizers")
       << model.body.supremizers << (model.body.online_enriched ? " (the space is made online)" : "")
       << '\n';
@@ -182,7 +181,7 @@ std::array<std::string, 2> worst_of(const ReducedModel &model, const std::string
 void print_several_answers(std::ostream &out, const ReducedModel &model) {
   if (!has_several_answers(model)) return;
   const auto [apart, at] = worst_of(model, "self_check/other");
-  const bool reduced = model.contact.law->reduction == MultiplierReduction::collocated;
+  const bool reduced = model.contact.law->on_functions();
   out << "  the " << (reduced ? "reduced " : "") << "law of friction has several answers, " << apart
       << " of the largest multiplier apart at " << at << ": a query takes "
       << (reduced

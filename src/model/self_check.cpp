@@ -115,7 +115,8 @@ void print_self_check(std::ostream &out, const SelfCheck &check, const Parameter
            "tolerances, or -multiplier_reduction condensed where the model has another\n";
   if (check.unanswered < check.queries && !check.admissible())
     out << "  bodies penetrate, or friction exceeds its bound, by more than 2 % of these scales: "
-           "where rbvi solve does not leave that, too, the model does not know what happens: reduce "
+           "where rbvi solve does not leave that, too, the model does not know what happens: "
+           "reduce "
            "again with more training parameters; where it does, refine the mesh\n";
 }
 

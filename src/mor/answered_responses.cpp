@@ -162,9 +162,8 @@ Matrix relative_columns(const Matrix &columns, double &largest) {
 bool factorises_for_displacements(const Problem &problem, const ReducedModel &model) {
   constexpr Index cheap = 100; // functions: their factor takes less than the law
   const NodalLaw &law = *model.contact.law;
-  return model.primal_size() > cheap && law.condensed.terms.size() > 0 &&
-         law.basis.normal.size() == 0 && law.states.size() == 0 && model.body.a.size() > 2 &&
-         problem.free_bodies().empty();
+  return model.primal_size() > cheap && law.condensed.terms.size() > 0 && !law.on_functions() &&
+         law.states.size() == 0 && model.body.a.size() > 2 && problem.free_bodies().empty();
 }
 
 Matrix answered_displacements(const Problem &problem, const ReducedModel &model) {

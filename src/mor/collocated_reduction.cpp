@@ -139,7 +139,14 @@ StageRow collocation_row(const Scene &, const ReduceOptions &, const Reduction *
 
 std::vector<ReductionStage> law_on_functions(const Scene &scene, const ReduceOptions &options) {
   std::vector<ReductionStage> list = first_stages(scene, separate_rows);
-  list.push_back(condensation_stage());
+  if (options.multipliers.exact)
+    list.push_back(condensation_stage());
+  else
+    list.push_back(
+        {stage::condensation, [](const Scene &, const ReduceOptions &, const Reduction *) {
+           return StageRow{stage::condensation, "not wanted (-multiplier_exact no)",
+                           StageKind::skipped};
+         }});
   list.push_back({stage::multipliers,
                   [](const Scene &, const ReduceOptions &, const Reduction *made) {
                     return StageRow{stage::multipliers, multiplier_text(made)};
@@ -170,6 +177,7 @@ void check_collocated(const Scene &scene, const ReduceOptions &options) {
 
 const ReductionWay collocated_way{
     .reduction = MultiplierReduction::collocated,
+    .name = "collocated",
     .says = "the published method: a cone (-cone_type mcpg) for lambda_n, modes for lambda_tau, "
             "supremizers, the friction bound at nodes chosen greedily (Algorithm 3), B^n and B^tau "
             "interpolated apart unless B is a multiple of one form; without friction the cone and "

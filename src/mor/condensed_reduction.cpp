@@ -14,10 +14,7 @@ namespace rbvi {
 
 namespace {
 
-StageRow condensation_row(const ReduceOptions &options, const Reduction *made) {
-  if (options.multipliers.reduction == MultiplierReduction::collocated &&
-      !options.multipliers.exact)
-    return {stage::condensation, "not wanted (-multiplier_exact no)", StageKind::skipped};
+StageRow condensation_row(const Scene &, const ReduceOptions &options, const Reduction *made) {
   if (made == nullptr)
     return {stage::condensation,
             "the condensed operator, at the Chebyshev points of the parameters of A to " +
@@ -32,18 +29,23 @@ StageRow condensation_row(const ReduceOptions &options, const Reduction *made) {
   return {stage::condensation, what};
 }
 
-/// What `condense` makes of the nodes' dual basis.
+/// Whether the multipliers are not reduced.
+bool has_no_functions(const Reducing &at) {
+  return !way_of(at.problem.scene(), at.options.multipliers.reduction).dual_basis;
+}
+
+/// What `condense` makes of the nodes' dual basis. Responses join the modes where they are what
+/// makes displacements as exact as multipliers.
 void make_condensed(Reducing &at) {
   Problem &problem = at.problem;
   ReducedBases &bases = at.made.bases;
   const Scene &scene = problem.scene();
-  const bool condensed = at.options.multipliers.reduction != MultiplierReduction::collocated;
   const std::vector<Mu> training = parameters_of(at.samples);
   const Matrix &multipliers = at.multipliers;
   const Matrix &nodal = nodal_dual_of(at);
   CondensedLoads loads = condensed_loads(problem, at.made.affine, training, multipliers, nodal);
-  const bool awaits = condensed && awaits_answers(problem, loads, at.options.condensed);
-  LinearBasis *modes = condensed && !awaits ? &bases.pod.basis : nullptr;
+  const bool awaits = has_no_functions(at) && awaits_answers(problem, loads, at.options.condensed);
+  LinearBasis *modes = has_no_functions(at) && !awaits ? &bases.pod.basis : nullptr;
   Condensation made = condense(problem, loads, expand(scene.parameters, training.front()),
                                at.options.condensed, modes, nodal_coefficients(nodal, multipliers));
   bases.condensed = std::move(made.condensed);
@@ -153,8 +155,7 @@ const Matrix &nodal_dual_of(Reducing &at) {
   bases.reduction = at.options.multipliers.reduction;
   bases.mended = at.options.multipliers.exact;
   bases.nodal_dual = nodal_dual_basis(at.problem, multipliers, at.options.cone.level);
-  if (bases.reduction == MultiplierReduction::collocated || follows_state(at.problem.scene()))
-    return bases.nodal_dual;
+  if (!has_no_functions(at) || follows_state(at.problem.scene())) return bases.nodal_dual;
   const std::vector<Index> near = columns_near_contact(at.problem.contact(), bases.nodal_dual,
                                                        multipliers, at.options.condensed.ring);
   bases.dropped = bases.nodal_dual.cols() - std::ssize(near);
@@ -162,11 +163,7 @@ const Matrix &nodal_dual_of(Reducing &at) {
 }
 
 ReductionStage condensation_stage() {
-  return {stage::condensation,
-          [](const Scene &, const ReduceOptions &options, const Reduction *made) {
-            return condensation_row(options, made);
-          },
-          make_condensed, condensation_need,
+  return {stage::condensation, condensation_row, make_condensed, condensation_need,
           "-response_tolerance 0, -multiplier_reduction cone where there is no friction, or a "
           "coarser mesh (-mesh_refine, -mesh)"};
 }
@@ -178,6 +175,7 @@ void project_law(Reducing &at) {
 
 const ReductionWay condensed_way{
     .reduction = MultiplierReduction::condensed,
+    .name = "condensed",
     .says = "not reduced: the law holds exactly at every node (or mirrored pair of nodes), and the "
             "body enters by its condensed operator B A^-1 B^T, interpolated where A varies; the "
             "most accurate by orders of magnitude",

@@ -84,6 +84,8 @@ std::vector<ReductionStage> modes_alone(const Scene &scene, const ReduceOptions 
 } // namespace
 
 const ReductionWay nitsche_way{.reduction = MultiplierReduction::none,
+                               .name = "",
+
                                .says = "",
                                .law = false,
                                .dual_basis = false,

@@ -134,6 +134,7 @@ std::vector<ReductionStage> pair_of_spaces(const Scene &scene, const ReduceOptio
 
 const ReductionWay cone_way{
     .reduction = MultiplierReduction::cone,
+    .name = "cone",
     .says = "a cone of functions (-cone_type), made stable by supremizers; without friction",
     .law = false,
     .dual_basis = true,

@@ -228,6 +228,16 @@ const std::vector<ReductionWay> &reduction_ways() {
   return ways;
 }
 
+const std::vector<std::string> &multiplier_reduction_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all{"auto"};
+    for (const ReductionWay &way : reduction_ways())
+      if (*way.name != 0) all.emplace_back(way.name);
+    return all;
+  }();
+  return names;
+}
+
 const ReductionWay &way_of(const Scene &scene, MultiplierReduction chosen) {
   if (!has_multipliers(scene)) return nitsche_way;
   if (chosen == MultiplierReduction::automatic)

@@ -6,45 +6,16 @@
 #include "rbvi/model/scene_text.hpp"
 #include "rbvi/par/collective.hpp"
 
+#include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 
 namespace rbvi {
 
 namespace {
 
-constexpr int sample_schema = 9;
-
-/// The outputs that a sample stores, in the order of their file record.
-constexpr std::array stored_outputs{&Outputs::energy,
-                                    &Outputs::normal_force,
-                                    &Outputs::tangential_force,
-                                    &Outputs::reaction,
-                                    &Outputs::horizontal_reaction,
-                                    &Outputs::contact_measure,
-                                    &Outputs::contact_half_width,
-                                    &Outputs::stick_half_width,
-                                    &Outputs::peak_pressure,
-                                    &Outputs::centre_pressure,
-                                    &Outputs::min_u,
-                                    &Outputs::contact_nodes,
-                                    &Outputs::stick_nodes,
-                                    &Outputs::ends_in_contact,
-                                    &Outputs::free_nodes,
-                                    &Outputs::slip_directions,
-                                    &Outputs::gap_error,
-                                    &Outputs::strained,
-                                    &Outputs::kkt_residual,
-                                    &Outputs::max_penetration,
-                                    &Outputs::overlap,
-                                    &Outputs::friction_violation,
-                                    &Outputs::law_error_normal,
-                                    &Outputs::law_error_tangential,
-                                    &Outputs::law_error_tau_over_n,
-                                    &Outputs::iterations,
-                                    &Outputs::load_steps,
-                                    &Outputs::contraction,
-                                    &Outputs::seconds};
+constexpr int sample_schema = 10;
 
 void check_settings(const std::filesystem::path &path, const Settings &mine,
                     const Settings &theirs) {
@@ -90,16 +61,19 @@ template <class Store, class List>
 void list_outputs(const Store &store, const std::string &name, List &&list) {
   std::vector<double> values;
   for (const Outputs &one : list)
-    for (const auto member : stored_outputs)
-      values.push_back((one.*member).value_or(std::numeric_limits<double>::quiet_NaN()));
+    for (const std::optional<double> &number : numbers_of(one))
+      values.push_back(number.value_or(std::numeric_limits<double>::quiet_NaN()));
   const std::size_t size = values.size();
   store(name, values);
   if constexpr (Store::reads) {
     if (values.size() != size) throw bad_input("another number of outputs");
     auto value = values.begin();
-    for (Outputs &one : list)
-      for (const auto member : stored_outputs)
-        if (const double next = *value++; !std::isnan(next)) one.*member = next;
+    for (Outputs &one : list) {
+      std::vector<std::optional<double>> numbers = numbers_of(one);
+      for (std::optional<double> &number : numbers)
+        if (const double next = *value++; !std::isnan(next)) number = next;
+      set_numbers(numbers, one);
+    }
   }
 }
 

@@ -6,6 +6,7 @@
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/model/training_samples.hpp"
 #include "rbvi/mor/cones.hpp"
+#include "rbvi/mor/reduction.hpp"
 #include "rbvi/study/output_errors.hpp"
 #include "rbvi/tool/tables.hpp"
 

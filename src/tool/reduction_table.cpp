@@ -139,7 +139,7 @@ std::vector<Option> of_law(ReduceOptions &o) {
   std::vector<std::string> reductions{
       "condensed on rigid supports and between two bodies, otherwise cone"};
   for (const ReductionWay &way : reduction_ways())
-    if (way.reduction != MultiplierReduction::none) reductions.emplace_back(way.says);
+    if (*way.name != 0) reductions.emplace_back(way.says);
   return {
       kept(number("condensed_tolerance", relative_error, o.condensed.tolerance,
                   "relative error that the condensed operator may have as a function of mu")),

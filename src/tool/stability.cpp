@@ -125,8 +125,7 @@ constexpr int most_steps = 200, most_steps_at_mu = 4000;
 
 std::string no_constants(const ReducedModel &model) {
   if (model.contact.generators == 0) return "Nitsche's method has no multipliers";
-  if (!model.contact.law || model.contact.law->reduction == MultiplierReduction::collocated)
-    return "";
+  if (!model.contact.law || model.contact.law->on_functions()) return "";
   return "-multiplier_reduction condensed has no reduced pair of spaces (collocated has one)";
 }
 

@@ -71,6 +71,12 @@ struct Outputs {
   std::vector<Outputs> interfaces{}; ///< of contact, each apart; empty: there is one
 };
 
+/// Every number of Outputs in the order of the table in outputs.cpp, which knows of each its
+/// column, what several contacts make of it, and its definition; not the named ones.
+std::vector<std::optional<double>> numbers_of(const Outputs &outputs);
+/// The inverse. Throws bad_input for another number of them.
+void set_numbers(const std::vector<std::optional<double>> &numbers, Outputs &outputs);
+
 /// Adds the outputs of a further contact interface: itself, sums of forces and measures, the
 /// largest of pressures and errors; the others stay as they are.
 void add_contact(const Outputs &one, Outputs &all);

@@ -108,10 +108,11 @@ struct SelfCheck {
 };
 
 /// H = B A^-1 B^T on the columns of the dual basis (m of them), term by term:
-/// H(mu) = sum over t of coefficient_t(mu) terms_t, over the common coefficient of a. The terms come in blocks, one for each pair of
-/// terms p <= q of b, of J terms each: coefficient = theta_p theta_q (shape w)_j, w the weights of
-/// the grid at mu. Where b does not separate, the terms are those of E^T A^-1 E on the contact dofs
-/// that the dual basis meets (m of them), in one block, and H = B (sum of terms) B^T.
+/// H(mu) = sum over t of coefficient_t(mu) terms_t, over the common coefficient of a. The terms
+/// come in blocks, one for each pair of terms p <= q of b, of J terms each: coefficient = theta_p
+/// theta_q (shape w)_j, w the weights of the grid at mu. Where b does not separate, the terms are
+/// those of E^T A^-1 E on the contact dofs that the dual basis meets (m of them), in one block, and
+/// H = B (sum of terms) B^T.
 struct CondensedOperator {
   std::vector<ChebyshevAxis> axes; ///< of the free parameters of a over its common coefficient
   Matrix shape;                    ///< J x grid points
@@ -128,9 +129,6 @@ enum class MultiplierReduction {
   collocated, ///< a cone for lambda_n, modes for lambda_tau, the bound at collocation nodes (3.54)
   none        ///< Nitsche's method has no multipliers
 };
-
-/// "auto", "cone", "condensed", "collocated".
-const std::vector<std::string> &multiplier_reduction_names();
 
 /// The functions of MultiplierReduction::collocated by their coefficients in the nodal dual basis:
 /// k nodes, t of them of interfaces with friction.
@@ -161,6 +159,8 @@ struct NodalLaw {
                     ///< operator their multipliers), where a query starts from
   Matrix starts_mu; ///< free parameters x P: where they are
   Matrix states;    ///< contact dofs x P: their displacements, where contact follows them; or empty
+  /// On functions of the nodes, not at every node.
+  bool on_functions() const { return basis.normal.size() > 0; }
 };
 
 /// A contact interface of the model.

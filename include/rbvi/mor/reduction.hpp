@@ -72,9 +72,9 @@ struct Joining {
 /// A way to reduce the multipliers.
 struct ReductionWay {
   MultiplierReduction reduction;
-  const char *says; ///< of -multiplier_reduction
-  bool law;         ///< the law at nodes (NodalLaw), not a pair of spaces
-  bool dual_basis;  ///< it has functions of the multipliers, and supremizers
+  const char *name, *says; ///< a choice of -multiplier_reduction; "": it is none
+  bool law;                ///< the law at nodes (NodalLaw), not a pair of spaces
+  bool dual_basis;         ///< it has functions of the multipliers, and supremizers
   /// Throws bad_input for a scene or options that it is not for.
   void (*check)(const Scene &scene, const ReduceOptions &options);
   std::vector<ReductionStage> (*stages)(const Scene &scene, const ReduceOptions &options);
@@ -86,6 +86,8 @@ struct ReductionWay {
 
 /// In the order of MultiplierReduction, without `automatic`.
 const std::vector<ReductionWay> &reduction_ways();
+/// "auto", "cone", "condensed", "collocated".
+const std::vector<std::string> &multiplier_reduction_names();
 /// Of a scene; `chosen` automatic: the one that suits it.
 const ReductionWay &way_of(const Scene &scene, MultiplierReduction chosen);
 
