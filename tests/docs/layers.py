@@ -151,7 +151,7 @@ def without_namespaces(lines):
 
 def is_table(body):
     """Whether all that a function does is to hold, or return, a table."""
-    statements = [line for line in body[1:-1] if re.match(r"  [^ }/#]", line)]
+    statements = [line for line in body[1:-1] if re.match(r"  (?!using )[^ }/#]", line)]
     return bool(statements) and TABLE.match(statements[0].strip()) is not None and all(
         line.strip().startswith("return ") for line in statements[1:])
 
