@@ -2,6 +2,7 @@
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/io/output_table.hpp"
 
+#include <cstddef>
 #include <gtest/gtest.h>
 #include <set>
 #include <sstream>
@@ -60,6 +61,20 @@ TEST(OutputColumns, EachHasANameOfItsOwnAndADefinition) {
   }
   EXPECT_TRUE(is_table_column("status"));
   EXPECT_FALSE(is_table_column("radius"));
+}
+
+/// Samples, columns and sums over contacts see what is in the table.
+TEST(NumbersOfOutputs, AreAllMembersAndComeBack) {
+  const std::size_t members = offsetof(Outputs, named) / sizeof(std::optional<double>);
+  std::vector<std::optional<double>> numbers(members);
+  for (std::size_t i = 0; i < members; i += 2)
+    numbers[i] = 1.5 * static_cast<double>(i);
+  Outputs outputs;
+  ASSERT_EQ(numbers_of(outputs).size(), members);
+  set_numbers(numbers, outputs);
+  EXPECT_EQ(numbers_of(outputs), numbers);
+  numbers.pop_back();
+  EXPECT_THROW(set_numbers(numbers, outputs), Error);
 }
 
 TEST(PrintOutputs, OneLineForEach) {

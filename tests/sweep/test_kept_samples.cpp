@@ -229,6 +229,10 @@ TEST_F(SweepTest, OutputsOfEachContactAreKept) {
     EXPECT_TRUE(found[i].contact_nodes);
   }
   EXPECT_EQ(resolution_warning(kept.samples.front().outputs), resolution_warning(solved));
+  const Sweep again =
+      run_sweep(PETSC_COMM_WORLD, groups, problem, {}, {mu}, {directory / "roller"});
+  ASSERT_EQ(again.report.reused, 1);
+  EXPECT_EQ(numbers_of(again.samples.front().outputs), numbers_of(kept.samples.front().outputs));
 }
 
 TEST_F(SweepTest, ARetriedSampleThatSucceedsLosesItsReason) {
