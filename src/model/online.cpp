@@ -261,10 +261,7 @@ void OnlineSolver::check_forces(const ReducedAnswer &solution) const {
 Outputs OnlineSolver::outputs(const Mu &mu, const ReducedAnswer &solution) const {
   Outputs result;
   result.energy = image_count(scene_.mirrors) * solution.energy;
-  result.kkt_residual = solution.residual;
-  result.iterations = solution.iterations;
-  result.load_steps = solution.load_steps;
-  result.contraction = solution.contraction;
+  tell(solution, result);
   const ValidationErrors &expected = expected_errors(model_);
   if (expected.count > 0 && in_box(scene_.parameters, mu)) {
     result.expected_error_u = expected.u_max;

@@ -180,9 +180,9 @@ public:
     }
     auto &[result, steps] = found;
     measure(problem_, op, op.weights, result);
-    result.load_steps = result.outputs.load_steps = steps.load_steps;
+    result.load_steps = steps.load_steps;
     result.slip = slip_left(problem_, op, task.slip, result);
-    result.contraction = result.outputs.contraction = steps.rate;
+    result.contraction = steps.rate;
     result.states = std::move(steps.iterates);
     result.states.push_back(std::move(steps.state));
     return std::move(result);

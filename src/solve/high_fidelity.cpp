@@ -46,12 +46,10 @@ void measure(const Problem &problem, const Operators &op, const Vector &weights,
                      " digits of the displacement";
   outputs.energy = image_count(problem.scene().mirrors) *
                    (quadratic / 2 - linear + op.imposed_energy + problem.spring_energy());
-  outputs.kkt_residual = result.residual;
   const Vector left = op.nodal_gap - op.nodal_b * restrict_to(problem.trace(), result.free_u.get());
   std::array<double, 2> penetration = penetration_at(left, op.nodal_gap);
   over_ranks(problem.comm(), MPI_MAX, penetration);
   set_penetration(penetration, outputs);
-  outputs.iterations = result.iterations;
   ContactOperators of_outputs;
   of_outputs.weights = weights;
   of_outputs.state = op.state;
@@ -153,6 +151,7 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
   method_->set(op);
   MethodResult result = problem_.free_bodies().empty() ? run(mu, op, slip, nearest(mu), false)
                                                        : run_free(mu, op, rows, slip);
+  tell(result, result.outputs);
   result.u = whole_displacement(problem_, mu, result.free_u.get());
   add_named_outputs(problem_, op.mu, result.u, result.lambda, result.outputs);
   if (problem_.scene().components == 1) result.outputs.min_u = result.u.minCoeff();

@@ -82,7 +82,6 @@ MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, ContactRo
                   " at no cost at the answer, where no contact and no friction holds it");
   result.iterations = iterations;
   result.beta = balance.beta;
-  result.outputs.iterations = iterations;
   return result;
 }
 

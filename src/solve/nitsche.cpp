@@ -70,8 +70,8 @@ MethodResult ByNitsche::solve(const ContactTask &task) {
   result.kkt.stationarity = found.residual;
   result.outputs.energy =
       image_count(problem_.scene().mirrors) * (found.energy + op.imposed_energy);
-  result.residual = *(result.outputs.kkt_residual = found.residual);
-  result.outputs.iterations = result.iterations = found.iterations;
+  result.residual = found.residual;
+  result.iterations = found.iterations;
   result.converged = true;
   result.reason = found.reason + ", " + std::to_string(found.iterations) + " Newton steps in " +
                   std::to_string(found.outer_iterations) + " loops, " +

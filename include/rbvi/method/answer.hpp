@@ -1,7 +1,7 @@
 // What every method of contact returns at one mu, on a full body and on a reduced one.
 #pragma once
 
-#include "rbvi/core/dense.hpp"
+#include "rbvi/core/outputs.hpp"
 
 #include <optional>
 #include <string>
@@ -18,5 +18,13 @@ struct Answer {
   std::optional<double> load_steps{}, contraction{};
   std::string reason; ///< why the method stopped
 };
+
+/// Sets the outputs that tell how it was found.
+inline void tell(const Answer &answer, Outputs &outputs) {
+  outputs.kkt_residual = answer.residual;
+  outputs.iterations = answer.iterations;
+  outputs.load_steps = answer.load_steps;
+  outputs.contraction = answer.contraction;
+}
 
 } // namespace rbvi
