@@ -41,17 +41,27 @@ RUNS = (
     Run("membrane, published cone", "membrane_obstacle", "membrane_obstacle", ("-variant", "published")),
     Run("two disks, condensed", "two_disks", "two_disks"),
     Run("two disks, cone", "two_disks", "two_disks", ("-variant", "cone")),
+    Run("two disks, published", "two_disks", "two_disks", ("-variant", "published")),
     Run("two disks, large", "two_disks_large", "two_disks", ("-variant", "large")),
     Run("disk, no friction", "disk_none", DISK, ("-friction", "none")),
     Run("disk, no friction, Nitsche", "disk_none", DISK, (*NITSCHE, "-friction", "none")),
+    Run("disk, no friction, Nitsche, published", "disk_none", DISK,
+        ("-variant", "nitsche_published", "-friction", "none")),
     Run("disk, Tresca", "disk_tresca", DISK, ("-friction", "tresca")),
     Run("disk, Tresca, Nitsche", "disk_tresca", DISK, (*NITSCHE, "-friction", "tresca")),
     Run("disk, Coulomb, condensed", "disk_coulomb", DISK),
     Run("disk, Coulomb, collocated", "disk_coulomb", DISK, ("-multiplier_reduction", "collocated")),
+    Run("disk, Coulomb, published", "disk_coulomb", DISK, ("-variant", "published")),
     Run("disk, Coulomb, Nitsche", "disk_coulomb", DISK, NITSCHE),
     Run("disk, large", "disk_large", DISK, ("-variant", "large")),
+    Run("disk, large, Coulomb", "disk_large", DISK, ("-variant", "large", "-friction", "coulomb")),
+    Run("disk, large, published", "disk_large", DISK, ("-variant", "published_large")),
     Run("disk, large, Nitsche", "disk_large", DISK, ("-variant", "large_nitsche")),
     Run("roller", "roller", "roller"),
+    Run("roller, no friction, cone", "roller", "roller",
+        ("-friction", "none", "-multiplier_reduction", "cone")),
+    Run("roller, Nitsche", "roller", "roller", ("-formulation", "nitsche")),
+    Run("patch", "patch", "patch"),
     Run("flange", "bolted_flange", "bolted_flange", levels=1),
     Run("seal", "seal", "seal", levels=1),
     Run("bracket", "bracket", "bracket"),
@@ -200,7 +210,7 @@ Command `tests/bench/all overview`, commit {commit}, {cores} cores. One page for
 scene by scene ([tests](../README.md#benchmarks)).
 
 - *full solve, warm*: the best high-fidelity solver, started from the answer at the parameter before, with its field.
-- *interpolation*: of the snapshots, multilinear on grids, else the nearest one; it enforces no constraint.
+- *interpolation*: of the snapshots, multilinear on grids, else by cubic radial functions; it enforces no constraint.
 - *outputs*, *with field*: an answer of the model with its outputs; with the displacement of every node as well.
 - errors: of the model against full solves on the same mesh, largest over the validation set; outputs over the range
   of each. *mesh error*: of energy and normal force on this mesh against the mesh refined twice, of flange and seal
