@@ -6,6 +6,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/facet_forms.hpp"
+#include "rbvi/mor/reduction.hpp"
 #include "rbvi/study/stability_report.hpp"
 #include "tests/catalogue.hpp"
 
