@@ -13,7 +13,7 @@ namespace {
 using Tensor = Eigen::Matrix3d;
 
 /// Rows and columns of the components, a plane body's first.
-constexpr std::array<std::array<int, 2>, 6> places{
+constexpr std::array<std::array<int, 2>, 6> entries_of_stress{
     {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}}};
 
 Index component_count(int dim) {
@@ -116,7 +116,7 @@ Matrix centre_stresses(const Scene &scene, const FullMu &all_parameters, const M
         cell.u[i][c] = displacement[3 * Index{nodes[i]} + c];
     const Tensor sigma = stress_at(scene, all_parameters, cell, centre).sigma;
     for (Index c = 0; c < result.cols(); ++c) {
-      const auto [i, j] = places[c];
+      const auto [i, j] = entries_of_stress[c];
       result(k, c) = sigma(i, j);
     }
   }

@@ -11,7 +11,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr std::size_t at_a_time = 192; ///< columns, solves: bounds the memory
+constexpr std::size_t columns_at_once = 192; ///< columns, solves: bounds the memory
 
 /// Some rows of a matrix, as the columns of the result.
 Matrix rows_as_columns(const SparseMatrix &matrix, const std::vector<Index> &rows) {
@@ -57,10 +57,10 @@ std::optional<HeldDofs> held_dofs(const SparseMatrix &b, const std::vector<Index
 Matrix hold_by_columns(const ColumnSource &condensed, const std::vector<Index> &held,
                        const Matrix &others) {
   Matrix block(std::ssize(held), std::ssize(held)), result(std::ssize(held), others.cols());
-  for (std::size_t first = 0; first < held.size(); first += at_a_time) {
+  for (std::size_t first = 0; first < held.size(); first += columns_at_once) {
     const auto begin = held.begin() + static_cast<std::ptrdiff_t>(first);
-    const std::vector<Index> some(begin,
-                                  begin + std::min<std::ptrdiff_t>(at_a_time, held.end() - begin));
+    const std::vector<Index> some(
+        begin, begin + std::min<std::ptrdiff_t>(columns_at_once, held.end() - begin));
     const Matrix columns = condensed(some);
     const auto place = static_cast<Index>(first);
     block.middleCols(place, columns.cols()) = columns(held, Eigen::all);
@@ -80,8 +80,8 @@ Matrix hold_by_reactions(const Problem &problem, const Operators &op, const Held
   const Trace &trace = problem.trace();
   ResponseSolver solver(without_dofs(op.a, trace, held.dofs).get(), trace, "hf_");
   Matrix result(std::ssize(held.dofs), others.cols());
-  for (Index first = 0; first < others.cols(); first += at_a_time) {
-    const Index count = std::min<Index>(at_a_time, others.cols() - first);
+  for (Index first = 0; first < others.cols(); first += columns_at_once) {
+    const Index count = std::min<Index>(columns_at_once, others.cols() - first);
     const Matrix loads = op.b.transpose() * others.middleCols(first, count);
     Matrix free_loads = loads;
     free_loads(held.dofs, Eigen::all).setZero();

@@ -9,7 +9,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr double exact = 1e-12; ///< tolerance for what is a sum of few terms
+constexpr double sum_tolerance = 1e-12; ///< tolerance for what is a sum of few terms
 
 /// The entries of the lower triangle of a matrix that is made of blocks of the faces.
 class LayerPattern {
@@ -165,7 +165,7 @@ LayerTerms interpolate_consistency(const NitscheLayer &layer, const std::vector<
     const auto faces = nitsche_faces(layer, expand(layer.scene.parameters, sample.mu), layer.cells);
     values.push_back(pattern.values(layer.cells, nitsche_consistency(faces)));
   }
-  return interpolated(side_by_side(values), pattern.keys(), true, exact,
+  return interpolated(side_by_side(values), pattern.keys(), true, sum_tolerance,
                       [&](const Vector &column) { return pattern.projected(column, trace); })
       .terms;
 }
