@@ -2,7 +2,7 @@
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-packages=(g++ cmake ninja-build pkg-config petsc-dev slepc-dev libopenmpi-dev openmpi-bin libmetis-dev
+packages=(g++ clang-16 libclang-rt-16-dev cmake ninja-build pkg-config petsc-dev slepc-dev libopenmpi-dev openmpi-bin libmetis-dev
   libhdf5-dev libhdf5-openmpi-dev libeigen3-dev libopenblas-dev libyaml-cpp-dev libgtest-dev
   libmuparser-dev python3-numpy python3-scipy python3-matplotlib python3-h5py python3-jsonschema
   python3-yaml
@@ -45,8 +45,13 @@ install_missing() {
 # build TARGET...
 build() {
   say "building in build/ (Release) with $cores cores: $*"
-  local generator=() # a folder that is there keeps its own
-  [[ -e build/CMakeCache.txt ]] || generator=(-G Ninja)
-  cmake -S . -B build "${generator[@]}" -DCMAKE_BUILD_TYPE=Release >/dev/null
+  local chosen=() # a folder that is there keeps its generator and its compiler
+  if [[ ! -e build/CMakeCache.txt ]]; then
+    chosen=(-G Ninja)
+    # Four times faster to compile than g++ 12; CXX and CC choose another one.
+    [[ -n ${CXX:-} ]] || ! command -v clang++-16 >/dev/null ||
+      chosen+=(-DCMAKE_CXX_COMPILER=clang++-16 -DCMAKE_C_COMPILER=clang-16)
+  fi
+  cmake -S . -B build "${chosen[@]}" -DCMAKE_BUILD_TYPE=Release >/dev/null
   cmake --build build --parallel "$cores" --target "$@"
 }

@@ -241,7 +241,7 @@ void settle_units(CaseNode &root) {
           own.kind = CaseNode::Kind::value;
           own.entries.clear();
           own.value = unit;
-          parameter.entries.emplace_back("unit", own);
+          parameter.entries.push_back({"unit", own});
         }
 }
 
@@ -318,7 +318,7 @@ SceneEntry read_case(const std::string &text, const std::string &file, const Cas
   for (const auto &[name, node] : section(reader, "options").entries)
     if (node.is_table())
       defects.add(node, "options are not nested: write '" + name + "_" +
-                            (node.entries.empty() ? "..." : node.entries.front().first) +
+                            (node.entries.empty() ? "..." : node.entries.front().name) +
                             ": value'");
   for (const auto &[name, node] : section(reader, "options").entries)
     scene_entry.settings.push_back({name, setting_text(node), node.line});

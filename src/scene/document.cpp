@@ -157,7 +157,7 @@ void add_entries(const YAML::Node &yaml, const std::string &file, CaseNode &tabl
     CaseNode entry = node_of(pair.second, file);
     entry.line = line;
     entry.column = pair.first.Mark().column + 1;
-    table.entries.emplace_back(name, std::move(entry));
+    table.entries.push_back({name, std::move(entry)});
   }
 }
 
@@ -185,9 +185,8 @@ CaseNode node_of(const YAML::Node &yaml, const std::string &file) {
 } // namespace
 
 const CaseNode *CaseNode::find(const std::string &name) const {
-  const auto found =
-      std::ranges::find(entries, name, [](const auto &entry) { return entry.first; });
-  return found == entries.end() ? nullptr : &found->second;
+  const auto found = std::ranges::find(entries, name, &CaseNode::Entry::name);
+  return found == entries.end() ? nullptr : &found->node;
 }
 
 CaseNode parse_document(const std::string &text, const std::string &file) {
@@ -210,28 +209,26 @@ bool replace(CaseNode &root, const std::string &path, const CaseNode &value) {
   for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', begin)) {
     const std::string name = path.substr(begin, dot - begin);
     begin = dot + 1;
-    const auto found =
-        std::ranges::find(at->entries, name, [](const auto &entry) { return entry.first; });
+    const auto found = std::ranges::find(at->entries, name, &CaseNode::Entry::name);
     if (found != at->entries.end()) {
-      at = &found->second;
+      at = &found->node;
     } else if (takes_away) {
       return true;
     } else {
       CaseNode table{CaseNode::Kind::table, "", {}, {}, value.line, value.column};
-      at = &at->entries.emplace_back(name, std::move(table)).second;
+      at = &at->entries.emplace_back(CaseNode::Entry{name, std::move(table)}).node;
     }
     if (!at->is_table() && !(at->is_value() && at->value.empty())) return false;
     at->kind = CaseNode::Kind::table;
   }
   const std::string name = path.substr(begin);
-  const auto found =
-      std::ranges::find(at->entries, name, [](const auto &entry) { return entry.first; });
+  const auto found = std::ranges::find(at->entries, name, &CaseNode::Entry::name);
   if (found == at->entries.end()) {
-    if (!takes_away) at->entries.emplace_back(name, value);
+    if (!takes_away) at->entries.push_back({name, value});
   } else if (takes_away) {
     at->entries.erase(found);
   } else {
-    found->second = value;
+    found->node = value;
   }
   return true;
 }

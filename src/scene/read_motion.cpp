@@ -48,7 +48,7 @@ std::vector<Expression> derived_motion(Reader &reader, const Scene &scene) {
   const auto &all = section(reader, "imposed").entries;
   const bool springs = !section(reader, "springs").entries.empty(); // which it would stretch
   if (scene.components != 2 || all.size() != 1 || springs) return {};
-  const Imposed imposed = imposed_in(reader, all.front().second, 2, {});
+  const Imposed imposed = imposed_in(reader, all.front().node, 2, {});
   if (!imposed[0] || !imposed[1] || (is_zero(*imposed[0]) && is_zero(*imposed[1]))) return {};
   if (scene.axisymmetric && !is_zero(*imposed[0])) return {}; // widens the body
   std::vector<Expression> motion{*imposed[0], *imposed[1]};

@@ -47,8 +47,7 @@ std::vector<NodalBound> bounds_along(const Contact &contact, const FullMu &mu) {
   return result;
 }
 
-LocalFrames::LocalFrames(const Problem &problem)
-    : problem_(problem), row_of_(problem.trace().size, -1) {
+LocalFrames::LocalFrames(const Problem &problem) : row_of_(problem.trace().size, -1) {
   const Trace &trace = problem.trace();
   const Dofs &dofs = problem.dofs();
   for (std::size_t k = 0; k < trace.index.size(); ++k)

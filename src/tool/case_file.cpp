@@ -32,7 +32,7 @@ void check_name(const std::string &name, int line, const std::string &file) {
 std::string value_of(const std::string &name, const CaseNode &node, const std::string &file) {
   if (node.is_table()) {
     std::string option = name;
-    if (!node.entries.empty()) option.append("_").append(node.entries.front().first);
+    if (!node.entries.empty()) option.append("_").append(node.entries.front().name);
     throw malformed(file, node.line,
                     "options are not nested: write '" + option + ": value' on a line of its own");
   }

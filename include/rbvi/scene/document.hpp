@@ -14,13 +14,19 @@ struct CaseNode {
   Kind kind = Kind::value;
   std::string value; ///< as it is written, without quotes; "" for nothing
   std::vector<CaseNode> items;
-  std::vector<std::pair<std::string, CaseNode>> entries;
+  struct Entry;
+  std::vector<Entry> entries;
   int line = 0, column = 0; ///< from 1; of an entry of a table that of its name
 
   bool is_value() const { return kind == Kind::value; }
   bool is_table() const { return kind == Kind::table; }
   /// Null where there is no such entry, or this is no table.
   const CaseNode *find(const std::string &name) const;
+};
+
+struct CaseNode::Entry {
+  std::string name;
+  CaseNode node;
 };
 
 /// One document whose root is a table. Throws bad_input with the line of what YAML does not allow,

@@ -20,7 +20,7 @@ std::vector<NodalBound> bounds_along(const Contact &contact, const FullMu &mu);
 
 class LocalFrames {
 public:
-  /// Collective. `problem` must outlive it.
+  /// Collective.
   explicit LocalFrames(const Problem &problem);
   /// The bounds of what follows, always at the same nodes. Collective.
   void set(std::vector<NodalBound> bounds);
@@ -32,7 +32,6 @@ public:
   Handle<Vec> upper() const;
 
 private:
-  const Problem &problem_;
   std::vector<NodalBound> bounds_;
   std::vector<PetscInt> row_of_; ///< contact dofs: row if it is this rank's, else -1
   Handle<Mat> q_;
