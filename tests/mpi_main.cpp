@@ -1,5 +1,6 @@
 // Runs GoogleTest on every rank. Rank 0 prints as usual; the others print their failures, marked
 // with their rank; the status is that of the worst rank.
+#include "rbvi/mor/published/reductions.hpp"
 #include "rbvi/par/session.hpp"
 
 #include <gtest/gtest.h>
@@ -26,6 +27,7 @@ private:
 int main(int argc, char **argv) {
   testing::InitGoogleTest(&argc, argv);
   const rbvi::Session session(argc, argv);
+  rbvi::add_published_reductions();
   int rank = 0;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   if (rank != 0) {

@@ -1,4 +1,4 @@
-// The three ways to meet the law of contact and friction in a query.
+// The two ways to meet the law of contact and friction at all nodes in a query.
 #pragma once
 
 #include "rbvi/method/nonlinear.hpp"
@@ -24,30 +24,6 @@ private:
   const bool by_rule_, looks_for_others_;
   LawProblem problem_;
   LawStarts starts_;
-};
-
-/// On fewer functions. From the answer on them at the nearest training sample; by Uzawa's method
-/// from zero, and then never mended.
-class CollocatedSolver : public QueryMethod {
-public:
-  CollocatedSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
-                   const QueryOptions &options);
-  ReducedAnswer solve(const FullMu &mu, Relaxed relaxed) override;
-  void displace(ReducedAnswer &answer) override { at_nodes_.displace(answer); }
-
-private:
-  Vector start(const FullMu &mu);
-  CollocatedResult solve_functions(const LawAtMu &law, const Vector &start);
-  /// Whether its answer stands; if not, exact steps follow, from it if there is one.
-  bool answer_on_functions(const LawAtMu &law, const Vector &start, ReducedAnswer &answer);
-
-  const ReducedModel &model_;
-  const Scene &scene_;
-  const QueryOptions options_;
-  NodeLawSolver at_nodes_;
-  SampleStarts<Vector> starts_;
-  Vector last_;    ///< CollocatedResult::x of the last query
-  Matrix product_; ///< Gram matrix of the functions in W, for Uzawa's method
 };
 
 /// At every node, contact that follows the displacement.

@@ -17,6 +17,14 @@ const ReducedModel &with_law(const ReducedModel &model) {
 
 } // namespace
 
+Matrix multiplier_coefficients(const MultiplierBasis &basis) {
+  const Matrix &a = basis.normal, &b = basis.tangential;
+  Matrix result = Matrix::Zero(a.rows() + b.rows(), a.cols() + b.cols());
+  result.topLeftCorner(a.rows(), a.cols()) = a;
+  result.bottomRightCorner(b.rows(), b.cols()) = b;
+  return result;
+}
+
 LawProblem::LawProblem(const ReducedModel &model, const Scene &scene, const Contact &contact)
     : model_(with_law(model)), scene_(scene), interfaces_(contact),
       columns_(laws_of_columns(contact, model.contact.dual_basis)),

@@ -52,13 +52,20 @@ void NodeLawSolver::displace(ReducedAnswer &answer) {
   starts_.keep(answer.start);
 }
 
+std::map<MultiplierReduction, LawSolverMaker> &law_solvers() {
+  static std::map<MultiplierReduction, LawSolverMaker> list;
+  return list;
+}
+
 std::unique_ptr<QueryMethod> law_solver(const ReducedModel &model, const Scene &scene,
                                         const Contact &contact, const QueryOptions &options) {
   if (!model.contact.law) throw bad_input("the model has no law of contact at nodes");
   const bool follows = follows_state(contact), on_functions = model.contact.law->on_functions();
   if (follows && on_functions)
     throw bad_input("contact that follows the displacement is reduced to a law at all nodes");
-  if (on_functions) return std::make_unique<CollocatedSolver>(model, scene, contact, options);
+  if (on_functions)
+    return entered(law_solvers(), model.contact.law->reduction,
+                   "-multiplier_reduction collocated")(model, scene, contact, options);
   const bool by_rule = !options.warm && has_several_answers(model);
   if (follows) return std::make_unique<FollowingSolver>(model, scene, contact, options, by_rule);
   return std::make_unique<NodeLawSolver>(model, scene, contact, options, by_rule);

@@ -1,6 +1,6 @@
 #include "rbvi/mor/nitsche_quadrature.hpp"
 
-#include "nitsche_interpolation.hpp"
+#include "nitsche_layer.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/method/nonnegative_qp.hpp"
 #include "rbvi/model/nitsche_solver.hpp"
@@ -202,6 +202,11 @@ Matrix pressures_of(const Problem &problem, const std::vector<Sample> &samples) 
 
 } // namespace
 
+std::map<CurveRule, TermInterpolation> &term_interpolations() {
+  static std::map<CurveRule, TermInterpolation> list;
+  return list;
+}
+
 CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
                          const Matrix &coefficients, double u_left, const CurveOptions &options,
                          ReducedModel &model) {
@@ -228,7 +233,8 @@ CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
     choose_curve_points(all, options.tolerance > 0 ? options.tolerance : std::max(u_left, enough),
                         layer, samples, model, report);
   } else if (options.rule == CurveRule::interpolated) {
-    interpolate_terms(problem, samples, options, model, report);
+    entered(term_interpolations(), options.rule, interpolated_name)(problem, samples, options,
+                                                                    model, report);
     nitsche.rule = CurveRule::interpolated;
     nitsche.starts = coefficients;
   }

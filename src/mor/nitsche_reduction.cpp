@@ -89,7 +89,12 @@ const ReductionWay nitsche_way{.reduction = MultiplierReduction::none,
                                .says = "",
                                .law = false,
                                .dual_basis = false,
-                               .check = [](const Scene &, const ReduceOptions &) {},
+                               .check =
+                                   [](const Scene &, const ReduceOptions &options) {
+                                     if (options.curve.rule == CurveRule::interpolated)
+                                       (void)entered(term_interpolations(), options.curve.rule,
+                                                     interpolated_name);
+                                   },
                                .stages = modes_alone,
                                .joining = [](const Scene &, const ReduceOptions &,
                                              const ReductionSize &) { return Joining(); }};

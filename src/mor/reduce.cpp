@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/core/variants.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/model/self_check.hpp"
 #include "rbvi/mor/reduced_balance.hpp"
@@ -223,9 +224,23 @@ double ReductionSize::responses(double loads) const {
   return factor + 2 * dofs * std::min(at_once, loads / ranks);
 }
 
-const std::vector<ReductionWay> &reduction_ways() {
-  static const std::vector<ReductionWay> ways{cone_way, condensed_way, collocated_way, nitsche_way};
+namespace {
+
+std::vector<ReductionWay> &list_of_ways() {
+  static std::vector<ReductionWay> ways{cone_way, condensed_way, nitsche_way};
   return ways;
+}
+
+} // namespace
+
+const std::vector<ReductionWay> &reduction_ways() {
+  return list_of_ways();
+}
+
+void add_reduction(const ReductionWay &way) {
+  std::vector<ReductionWay> &ways = list_of_ways();
+  if (std::ranges::find(ways, way.reduction, &ReductionWay::reduction) == ways.end())
+    ways.push_back(way);
 }
 
 const std::vector<std::string> &multiplier_reduction_names() {
@@ -238,11 +253,18 @@ const std::vector<std::string> &multiplier_reduction_names() {
   return names;
 }
 
+const std::vector<std::string> &collocation_nodes_names() {
+  static const std::vector<std::string> names{"best", "before_rise", "all"};
+  return names;
+}
+
 const ReductionWay &way_of(const Scene &scene, MultiplierReduction chosen) {
   if (!has_multipliers(scene)) return nitsche_way;
   if (chosen == MultiplierReduction::automatic)
     return keeps_nodes(scene) ? condensed_way : cone_way;
-  return *std::ranges::find(reduction_ways(), chosen, &ReductionWay::reduction);
+  const auto found = std::ranges::find(reduction_ways(), chosen, &ReductionWay::reduction);
+  if (found == reduction_ways().end()) throw not_entered("-multiplier_reduction collocated");
+  return *found;
 }
 
 void check_reduction(const Scene &scene, const ReduceOptions &options) {

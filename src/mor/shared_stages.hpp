@@ -37,6 +37,6 @@ Joining supremizers_join(const Scene &scene, const ReduceOptions &options,
 
 inline constexpr StageName pair_stages("cone, PGA");
 
-extern const ReductionWay cone_way, condensed_way, collocated_way, nitsche_way;
+extern const ReductionWay cone_way, condensed_way, nitsche_way;
 
 } // namespace rbvi

@@ -1,6 +1,7 @@
 // The supremizers of a reduced pair of spaces, offline.
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/model/law_problem.hpp"
 #include "rbvi/mor/high_fidelity_pair.hpp"
 #include "rbvi/par/collective.hpp"
 #include "shared_stages.hpp"
@@ -151,6 +152,10 @@ StageRow pga_row(const Scene &scene, const ReduceOptions &options, const Reducti
 }
 
 } // namespace
+
+Matrix multiplier_functions(const Matrix &nodal, const MultiplierBasis &basis) {
+  return nodal * multiplier_coefficients(basis);
+}
 
 const std::vector<std::string> &enrichment_names() {
   static const std::vector<std::string> names{"decorrelated", "online", "offline"};

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """layers.py ROOT: the code keeps to the layers of src/README.md, and to its sizes.
 
-A layer is a room, src/NAME with include/rbvi/NAME, without folders in it.
-- A layer includes itself and layers above it in the table "Layers" alone.
+A layer is a room, src/NAME with include/rbvi/NAME, without folders in it but for `published`: variants
+that the programs enter in lists of the room.
+- A layer includes itself and layers above it in the table "Layers" alone. What is published is included
+  by what is published, and by the mains.
 - No layer asks which kind of contact it has: outside of the layer contact and of that which makes
   scenes, no file includes the header of one or casts to one of its classes. Nitsche's method has files of that
   name; elsewhere no line asks for it, but for what contact has (has_multipliers, ...).
@@ -14,6 +16,7 @@ import sys
 from pathlib import Path
 
 MOST_OF_FILE, MOST_OF_FUNCTION = 400, 60
+PUBLISHED = "published"
 # A line that asks whether contact is by Nitsche's method; options of that method are data.
 NITSCHE_LINE = re.compile(r"(?<!options)(?<!hf)[.>]nitsche\b|([=!]=|case) *Formulation::")
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
@@ -33,7 +36,8 @@ def layers_of(root):
 
 def room_of(path, root):
     parts = path.relative_to(root).parent.parts
-    return "/".join(parts[2:] if parts[0] == "include" else parts[1:])
+    parts = parts[2:] if parts[0] == "include" else parts[1:]
+    return "/".join(parts[:-1] if parts[1:] == (PUBLISHED,) else parts)
 
 
 def sources(root, folders, suffixes=(".cpp", ".hpp")):
@@ -65,6 +69,8 @@ def check_includes(root):
                 continue
             if room_of(target, root) not in names[:names.index(layer) + 1]:
                 wrong.append(f"{path.relative_to(root)} includes {name}: {layer} is above it")
+            if target.parent.name == PUBLISHED and path.parent.name != PUBLISHED and layer != "bin":
+                wrong.append(f"{path.relative_to(root)} includes {name}, a published variant")
     for path in sources(root, [p for p in (root / "cases").iterdir() if p.is_dir()]):
         for name, target in included(path, root):
             if name.startswith("rbvi/") and name.split("/")[1] not in names[:online]:

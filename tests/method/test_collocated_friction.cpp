@@ -1,8 +1,8 @@
 #include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
-#include "rbvi/method/collocated_friction.hpp"
 #include "rbvi/method/nonnegative_qp.hpp"
+#include "rbvi/method/published/collocated_friction.hpp"
 
 #include "columns.hpp"
 #include "half_plane.hpp"

@@ -1,4 +1,4 @@
-#include "rbvi/method/collocated_friction.hpp"
+#include "rbvi/method/published/collocated_friction.hpp"
 
 #include "half_plane.hpp"
 

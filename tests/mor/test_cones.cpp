@@ -2,7 +2,7 @@
 #include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/method/nonnegative_qp.hpp"
-#include "rbvi/mor/cones.hpp"
+#include "rbvi/mor/published/greedy_cones.hpp"
 
 #include "multipliers.hpp"
 

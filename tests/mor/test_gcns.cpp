@@ -2,7 +2,7 @@
 #include "../method/columns.hpp"
 #include "../method/half_plane.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/mor/gcns.hpp"
+#include "rbvi/mor/published/gcns.hpp"
 
 #include <gtest/gtest.h>
 

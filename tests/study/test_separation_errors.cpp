@@ -5,6 +5,7 @@
 #include "rbvi/core/largest.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
 #include "rbvi/model/law_problem.hpp"
+#include "rbvi/mor/published/reductions.hpp"
 #include "rbvi/mor/reduction.hpp"
 #include "rbvi/study/separation_errors.hpp"
 #include "tests/catalogue.hpp"

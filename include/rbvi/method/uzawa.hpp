@@ -4,7 +4,7 @@
 //
 // P a projection onto the laws: corrected (3.18), (3.24), (3.32) of Niakh (2022) on a full body,
 // whose ranks share the entries of x, corrected (3.40), (3.52), (3.55) on a reduced one
-// (collocated_friction.hpp).
+// (published/collocated_friction.hpp).
 #pragma once
 
 #include "rbvi/core/dense.hpp"

@@ -3,7 +3,6 @@
 // multipliers.
 #pragma once
 
-#include "rbvi/method/collocated_friction.hpp"
 #include "rbvi/method/several_answers.hpp"
 #include "rbvi/model/column_laws.hpp"
 #include "rbvi/model/reduced_contact.hpp"
@@ -88,9 +87,5 @@ private:
 
 /// The functions in coefficients of the nodal dual basis: m x (R + S).
 Matrix multiplier_coefficients(const MultiplierBasis &basis);
-
-/// The reduced problem; its rows are those of the collocation nodes.
-CollocatedProblem collocated_problem(const MultiplierBasis &basis, const LawAtMu &law,
-                                     const BodyAtMu &body);
 
 } // namespace rbvi

@@ -6,12 +6,11 @@
 // Gauss points of the curve or a few with weights of their own: a minimisation either way, convex
 // where A_gamma is positive definite, with exact line search. Coulomb's bound moves with u: Newton
 // steps, halved until the residual falls, and where they do not settle, bounds frozen in an outer
-// loop (4.63). With empirical interpolation over (mu, Newton step) there is no energy: (4.79) as
-// printed, from neighbouring samples; where it does not converge, the derivative of its vectors,
-// with halved steps. Where contact follows the displacement (large deformations) the axes of the
+// loop (4.63). Where contact follows the displacement (large deformations) the axes of the
 // points turn to those of every iterate. Niakh (2022): (4.66)-(4.70), Remark 4.4.1.
 #pragma once
 
+#include "rbvi/core/variants.hpp"
 #include "rbvi/model/answer.hpp"
 #include "rbvi/model/nitsche_layer_terms.hpp"
 #include "rbvi/model/reduced_body.hpp"
@@ -19,6 +18,27 @@
 #include <memory>
 
 namespace rbvi {
+
+struct InterpolatedAnswer {
+  Vector u;        ///< n coefficients
+  double residual; ///< relative
+  int iterations;
+};
+
+/// Newton's method on operators of the curve that are interpolated over (mu, Newton step).
+class InterpolatedCurve {
+public:
+  virtual ~InterpolatedCurve() = default;
+  /// From the coefficients `near`; empty: from u = 0. `a_gamma`: n x n, `f`: n, at this mu. Throws
+  /// failure where it does not converge.
+  virtual InterpolatedAnswer solve(const FullMu &all_parameters, const Vector &near,
+                                   const Matrix &a_gamma, const Vector &f) const = 0;
+};
+
+using InterpolatedCurveMaker = std::unique_ptr<InterpolatedCurve> (*)(const ReducedModel &,
+                                                                      const NitscheLayer &);
+/// Those that a rule has.
+std::map<CurveRule, InterpolatedCurveMaker> &interpolated_curves();
 
 class ReducedNitsche : public QueryMethod {
 public:
@@ -45,7 +65,6 @@ public:
 
 private:
   struct System;
-  struct Interpolated;
 
   /// a(u, u) / 2 - f(u), and a_gamma.
   struct Quadratic {
@@ -65,7 +84,7 @@ private:
   const ReducedBody body_;
   SampledLayer consistency_;
   std::unique_ptr<System> system_;
-  std::unique_ptr<Interpolated> interpolated_;
+  std::unique_ptr<InterpolatedCurve> interpolated_;
   const bool from_rest_;                  ///< OnlineMethod::newton
   mutable std::unique_ptr<System> whole_; ///< made by the first outputs of a model with few points
 };

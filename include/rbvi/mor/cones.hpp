@@ -13,6 +13,7 @@
 #pragma once
 
 #include "rbvi/core/dense.hpp"
+#include "rbvi/core/variants.hpp"
 #include "rbvi/mor/held_multipliers.hpp"
 
 #include <string>
@@ -79,6 +80,12 @@ struct ConeOptions {
 Cone build_cone(const Matrix &snapshots, const SparseMatrix &product, const ConeOptions &options,
                 const HoldingMultipliers &hold = {});
 
+using ConeMaker = Cone (*)(const Matrix &snapshots, const SparseMatrix &product,
+                           const ConeOptions &options);
+/// Types beside nodal and hybrid: their snapshots are those of build_cone, without round-off below
+/// zero.
+std::map<ConeType, ConeMaker> &cone_makers();
+
 /// Relative distance of each column of `values` to what the cone and the modes span:
 /// |v - Pi v|_W / max_p |v_p|_W (all zero if every column is).
 Vector distances_to_cone(const Matrix &values, const ConeBasis &basis, const SparseMatrix &product,
@@ -86,18 +93,5 @@ Vector distances_to_cone(const Matrix &values, const ConeBasis &basis, const Spa
 
 /// U with U^T U = `product`: |U v| = |v|_W. Throws failure if it is not positive definite.
 Matrix product_factor(const SparseMatrix &product);
-
-/// Largest part of theta that a cone represents from below.
-struct PartBelow {
-  Vector coefficients;         ///< a >= 0, one per generator
-  std::vector<Index> touching; ///< nodes where the bound is active
-};
-
-/// Line 9 of Algorithm 2: a >= 0 that minimises |theta - N a|_W under theta - N a >= -slack at
-/// every node; N = `generators`, `coordinates` = U N, `target` = U theta with |U .| the norm of W.
-/// Where theta + slack is zero no generator that is positive may take part. Exact, by the dual of
-/// a least-distance problem. Throws failure if that does not converge.
-PartBelow largest_part_below(const Vector &theta, double slack, const Matrix &generators,
-                             const Matrix &coordinates, const Vector &target);
 
 } // namespace rbvi

@@ -3,6 +3,7 @@
 // Niakh (2022): (4.86).
 #pragma once
 
+#include "rbvi/core/variants.hpp"
 #include "rbvi/fem/problem.hpp"
 #include "rbvi/model/model.hpp"
 #include "rbvi/mor/pod.hpp"
@@ -41,6 +42,14 @@ struct CurveReport {
   std::array<EimErrors, 4> eim_errors; ///< as in NitscheModel: B^n, Theta^n, B^tau, Theta^tau
   int states = 0;                      ///< pairs (mu, Newton step)
 };
+
+/// Sets terms of contact and friction in model.contact.nitsche, and their report. Collective.
+using TermInterpolation = void (*)(Problem &problem, const std::vector<Sample> &samples,
+                                   const CurveOptions &options, ReducedModel &model,
+                                   CurveReport &report);
+/// Those that a rule has; for users that is `interpolated_name`.
+std::map<CurveRule, TermInterpolation> &term_interpolations();
+inline constexpr const char *interpolated_name = "-nitsche_quadrature interpolated";
 
 /// Fills model.contact.nitsche; the rest of the model is there. `coefficients`: of the samples in
 /// the modes, n x P (interpolated alone asks for them). `u_left`: relative error that the modes

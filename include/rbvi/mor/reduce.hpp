@@ -4,9 +4,9 @@
 
 #include "rbvi/model/model.hpp"
 #include "rbvi/mor/affine.hpp"
+#include "rbvi/mor/collocation.hpp"
 #include "rbvi/mor/condensed.hpp"
 #include "rbvi/mor/cones.hpp"
-#include "rbvi/mor/gcns.hpp"
 #include "rbvi/mor/nitsche_quadrature.hpp"
 #include "rbvi/mor/pod.hpp"
 #include "rbvi/mor/stability.hpp"
@@ -33,14 +33,6 @@ struct MultiplierBases {
 /// The functions of `basis` at all dual dofs, those of lambda_n first: dual dofs x (R + S).
 /// `nodal`: the nodal dual basis, whose coefficients they are.
 Matrix multiplier_functions(const Matrix &nodal, const MultiplierBasis &basis);
-
-/// A cone of lambda_n and, with friction, modes of lambda_tau: as few as leave `tangential`.
-/// `coefficients`: m x P, `normal` rows of lambda_n first; without friction they are all.
-/// `product`: m x m, its blocks of lambda_n and lambda_tau. Throws failure where the snapshots have
-/// no tangential stress at all.
-MultiplierBases make_multiplier_basis(const Matrix &coefficients, Index normal,
-                                      const SparseMatrix &product, double tangential,
-                                      const ConeOptions &cone);
 
 /// What is added to the modes.
 enum class Enrichment {
@@ -117,10 +109,6 @@ struct Reduction {
 /// any; bad_input for options that do not fit the scene.
 Reduction reduce(Problem &problem, const std::vector<Sample> &samples,
                  const ReduceOptions &options);
-
-/// `collocated` alone: the collocation nodes of a model that has none yet, into it. Serial.
-Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sample> &samples,
-               const GcnsOptions &options);
 
 /// The middle of the box. Free parameters.
 Mu box_centre(const ParameterSpace &space);

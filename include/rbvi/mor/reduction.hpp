@@ -1,7 +1,7 @@
 // A reduction as a list of stages: the plan, the report at its end, the memory and the time that
 // are foreseen, the refusal of what does not fit, and reduce() read this list. Each way to reduce
 // the multipliers is a file of mor with its list: pair_reduction.cpp, condensed_reduction.cpp,
-// collocated_reduction.cpp, nitsche_reduction.cpp.
+// nitsche_reduction.cpp, published/collocated_reduction.cpp.
 #pragma once
 
 #include "rbvi/mor/reduce.hpp"
@@ -84,9 +84,12 @@ struct ReductionWay {
   void (*repeats)(Reducing &at, const std::function<void()> &attempt) = nullptr;
 };
 
-/// In the order of MultiplierReduction, without `automatic`.
+/// Those that add_reduction() entered come last.
 const std::vector<ReductionWay> &reduction_ways();
-/// "auto", "cone", "condensed", "collocated".
+/// Adds a way, unless it is there. To be called before options are read.
+void add_reduction(const ReductionWay &way);
+/// "auto", "cone", "condensed" and, where it was added, "collocated": in the order of
+/// MultiplierReduction.
 const std::vector<std::string> &multiplier_reduction_names();
 /// Of a scene; `chosen` automatic: the one that suits it.
 const ReductionWay &way_of(const Scene &scene, MultiplierReduction chosen);

@@ -1,13 +1,16 @@
 // The published reduction of the law at nodes: a cone for lambda_n, modes for lambda_tau, the bound
 // of friction at collocation nodes. Niakh (2022): (3.39).
+#include "../shared_stages.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
-#include "rbvi/model/law_problem.hpp"
+#include "rbvi/model/published/collocated_problem.hpp"
 #include "rbvi/mor/nodal_dual_basis.hpp"
 #include "rbvi/mor/pod.hpp"
+#include "rbvi/mor/published/gcns.hpp"
+#include "rbvi/mor/published/reductions.hpp"
 #include "rbvi/par/small_svd.hpp"
-#include "shared_stages.hpp"
+#include "reductions.hpp"
 
 namespace rbvi {
 
@@ -37,12 +40,10 @@ DenseModes dense_pod(const Matrix &snapshots, const SparseMatrix &product, doubl
   return modes;
 }
 
-} // namespace
-
-Matrix multiplier_functions(const Matrix &nodal, const MultiplierBasis &basis) {
-  return nodal * multiplier_coefficients(basis);
-}
-
+/// A cone of lambda_n and, with friction, modes of lambda_tau: as few as leave `tangential`.
+/// `coefficients`: m x P, `normal` rows of lambda_n first; without friction they are all.
+/// `product`: m x m, its blocks of lambda_n and lambda_tau. Throws failure where the snapshots have
+/// no tangential stress at all.
 MultiplierBases make_multiplier_basis(const Matrix &coefficients, Index normal,
                                       const SparseMatrix &product, double tangential,
                                       const ConeOptions &cone) {
@@ -60,6 +61,8 @@ MultiplierBases make_multiplier_basis(const Matrix &coefficients, Index normal,
   bases.tangential = std::move(modes.error);
   return bases;
 }
+
+} // namespace
 
 Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sample> &samples,
                const GcnsOptions &options) {

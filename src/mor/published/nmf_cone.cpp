@@ -1,4 +1,4 @@
-#include "cone_tools.hpp"
+#include "reductions.hpp"
 
 #include "rbvi/core/error.hpp"
 

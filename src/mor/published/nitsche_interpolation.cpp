@@ -1,84 +1,13 @@
 // Niakh (2022): (4.71)-(4.78).
-#include "nitsche_interpolation.hpp"
-
-#include "rbvi/model/packed.hpp"
+#include "../nitsche_layer.hpp"
+#include "rbvi/solve/nitsche.hpp"
+#include "reductions.hpp"
 
 #include <algorithm>
 
 namespace rbvi {
 
 namespace {
-
-constexpr double sum_tolerance = 1e-12; ///< tolerance for what is a sum of few terms
-
-/// The entries of the lower triangle of a matrix that is made of blocks of the faces.
-class LayerPattern {
-public:
-  explicit LayerPattern(const std::vector<CurveCell> &cells) {
-    for (const CurveCell &cell : cells)
-      visit(cell.dofs, [&](int row, int column, Index, Index) { keys_.push_back({row, column}); });
-    std::sort(keys_.begin(), keys_.end());
-    keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
-  }
-  const std::vector<EntryKey> &keys() const { return keys_; }
-
-  Vector values(const std::vector<CurveCell> &cells, const std::vector<FaceBlock> &blocks) const {
-    Vector result = Vector::Zero(std::ssize(keys_));
-    for (std::size_t k = 0; k < cells.size(); ++k)
-      visit(cells[k].dofs, [&](int row, int column, Index i, Index j) {
-        const auto found = std::lower_bound(keys_.begin(), keys_.end(), EntryKey{row, column});
-        result[found - keys_.begin()] += blocks[k](i, j);
-      });
-    return result;
-  }
-
-  /// trace^T M trace, its lower triangle column by column.
-  Vector projected(const Vector &values, const Matrix &trace) const {
-    SparseMatrix lower(trace.rows(), trace.rows());
-    std::vector<Eigen::Triplet<double>> entries;
-    for (std::size_t k = 0; k < keys_.size(); ++k)
-      entries.emplace_back(keys_[k].row, keys_[k].column, values[k]);
-    lower.setFromTriplets(entries.begin(), entries.end());
-    return pack(trace.transpose() * (lower.selfadjointView<Eigen::Lower>() * trace));
-  }
-
-private:
-  template <class Visit> static void visit(const std::array<int, 12> &dofs, const Visit &at) {
-    for (std::size_t i = 0; i < 12; ++i)
-      for (std::size_t j = 0; j < 12; ++j)
-        if (dofs[j] >= 0 && dofs[i] >= dofs[j])
-          at(dofs[i], dofs[j], static_cast<Index>(i), static_cast<Index>(j));
-  }
-  std::vector<EntryKey> keys_;
-};
-
-struct Interpolation {
-  LayerTerms terms;
-  Eim eim;
-};
-
-/// `project`: of one column of `values` onto the basis.
-template <class Project>
-Interpolation interpolated(const Matrix &values, const std::vector<EntryKey> &keys, bool matrix,
-                           double tolerance, const Project &project) {
-  Interpolation result{{}, eim(MPI_COMM_SELF, values, keys, {.tolerance = tolerance})};
-  const Eim &found = result.eim;
-  LayerTerms &terms = result.terms;
-  terms.interpolation = found.interpolation;
-  terms.error = found.error.empty() ? 0 : found.error.back();
-  for (const EntryKey &entry : found.entries) {
-    terms.rows.push_back(static_cast<int>(entry.row));
-    if (matrix) terms.columns.push_back(static_cast<int>(entry.column));
-  }
-  Matrix taken;
-  for (int i = 0; i < found.size(); ++i) {
-    const Vector column = project(values.col(found.snapshots[i]));
-    if (i == 0) taken.resize(column.size(), found.size());
-    taken.col(i) = column;
-  }
-  if (found.size() > 0) terms.reduced = taken * found.combination.triangularView<Eigen::Upper>();
-  return result;
-}
 
 /// Adds e_EIM along the terms over other columns, and over those that are the last steps: each term
 /// removes what is left at its entry.
@@ -100,13 +29,6 @@ void add_errors_over(Matrix others, const std::vector<Index> &converged, const M
     if (last_scale > 0)
       errors.converged.push_back(largest(others(Eigen::all, converged)) / last_scale);
   }
-}
-
-Matrix side_by_side(const std::vector<Vector> &columns) {
-  Matrix result(columns.empty() ? 0 : columns.front().size(), std::ssize(columns));
-  for (std::size_t k = 0; k < columns.size(); ++k)
-    result.col(k) = columns[k];
-  return result;
 }
 
 /// Which steps of Newton's method are taken, and of which operators.
@@ -157,19 +79,6 @@ States states_at(Problem &problem, NitscheSolver &solver, const LayerPattern &pa
 
 } // namespace
 
-LayerTerms interpolate_consistency(const NitscheLayer &layer, const std::vector<Sample> &samples,
-                                   const Matrix &trace) {
-  const LayerPattern pattern(layer.cells);
-  std::vector<Vector> values;
-  for (const Sample &sample : samples) {
-    const auto faces = nitsche_faces(layer, expand(layer.scene.parameters, sample.mu), layer.cells);
-    values.push_back(pattern.values(layer.cells, nitsche_consistency(faces)));
-  }
-  return interpolated(side_by_side(values), pattern.keys(), true, sum_tolerance,
-                      [&](const Vector &column) { return pattern.projected(column, trace); })
-      .terms;
-}
-
 void interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
                        const CurveOptions &options, ReducedModel &model, CurveReport &report) {
   NitscheModel &nitsche = *model.contact.nitsche;
@@ -197,7 +106,7 @@ void interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
     const bool matrix = k % 2 == 0;
     const std::vector<EntryKey> &keys = matrix ? pattern.keys() : dofs;
     const Matrix values = side_by_side(states.values[k]);
-    Interpolation found =
+    LayerInterpolation found =
         interpolated(values, keys, matrix, options.eim_tolerance, [&](const Vector &column) {
           return matrix ? pattern.projected(column, trace) : Vector(trace.transpose() * column);
         });

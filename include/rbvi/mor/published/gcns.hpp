@@ -2,10 +2,8 @@
 // holds the bound of friction. Every reduced problem is solved exactly. Serial and dense.
 #pragma once
 
-#include "rbvi/method/collocated_friction.hpp"
-
-#include <string>
-#include <vector>
+#include "rbvi/method/published/collocated_friction.hpp"
+#include "rbvi/mor/collocation.hpp"
 
 namespace rbvi {
 
@@ -15,31 +13,6 @@ struct GcnsSample {
   Vector q;
   std::vector<FrictionBound> bounds; ///< of each node; a single one: of all
   Vector tangential;                 ///< lambda_tau, high-fidelity, at all nodes
-};
-
-/// Which nodes hold the bound.
-enum class CollocationNodes {
-  best,        ///< those of the least error, beyond all its rises
-  before_rise, ///< those of the step before the first rise of the error: the stop of Algorithm 3
-  all          ///< every one (3.43)
-};
-
-/// "best", "before_rise", "all".
-const std::vector<std::string> &collocation_nodes_names();
-
-struct GcnsOptions {
-  CollocationNodes nodes = CollocationNodes::best;
-  double tolerance = 0; ///< stop when e_GCNS is at or below; 0: no such stop
-  int max_nodes = 0;    ///< stop where more would be needed; 0: no bound
-};
-
-struct Gcns {
-  std::vector<int> nodes;        ///< of the least error, in the order of selection
-  std::vector<int> count;        ///< of nodes at each step q, from 0
-  std::vector<double> error;     ///< e_GCNS(q) of these nodes, (3.56)
-  std::vector<double> violation; ///< e_GCNS^{n tau}(q) (3.63), a pressure
-  std::vector<int> selected;     ///< training index mu_q of each step
-  std::string reason;
 };
 
 /// `normal_basis`: nodes x R, `tangential_basis`: nodes x S, values at all nodes; `product`: Gram

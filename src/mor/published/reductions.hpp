@@ -1,17 +1,20 @@
-// Empirical interpolation of operators on the contact layer.
+// The published reductions, which reductions.cpp enters in their lists.
 #pragma once
 
-#include "rbvi/model/nitsche_layer_terms.hpp"
-#include "rbvi/mor/eim.hpp"
+#include "greedy_cone.hpp"
 #include "rbvi/mor/nitsche_quadrature.hpp"
-#include "rbvi/solve/nitsche.hpp"
+#include "rbvi/mor/reduction.hpp"
 
 namespace rbvi {
 
-/// a_gamma - a over the training parameters, exact but for round-off where it is a sum of few
-/// terms. `trace`: contact dofs x n.
-LayerTerms interpolate_consistency(const NitscheLayer &layer, const std::vector<Sample> &samples,
-                                   const Matrix &trace);
+extern const ReductionWay collocated_way;
+
+// Types of cones: `snapshots` are checked ones.
+Cone projected_greedy_cone(const Matrix &snapshots, const SparseMatrix &product,
+                           const ConeOptions &options);
+Cone angle_greedy_cone(const Matrix &snapshots, const SparseMatrix &product,
+                       const ConeOptions &options);
+Cone nmf_cone(const Matrix &snapshots, const SparseMatrix &product, const ConeOptions &options);
 
 /// B^n, Theta^n and, with friction, B^tau, Theta^tau over all pairs of a training parameter and a
 /// Newton step (4.71)-(4.78), without friction from u = 0 (CurveOptions::published_pairs). Solves

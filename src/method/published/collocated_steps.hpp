@@ -3,8 +3,8 @@
 #pragma once
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/method/collocated_friction.hpp"
 #include "rbvi/method/nonnegative_qp.hpp"
+#include "rbvi/method/published/collocated_friction.hpp"
 
 #include <compare>
 #include <limits>

@@ -1,5 +1,5 @@
 // Niakh (2022): (3.40), (3.52), (3.55).
-#include "rbvi/method/collocated_friction.hpp"
+#include "rbvi/method/published/collocated_friction.hpp"
 
 #include "rbvi/core/text.hpp"
 #include "rbvi/method/nonnegative_qp.hpp"

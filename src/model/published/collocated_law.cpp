@@ -1,7 +1,8 @@
-#include "rbvi/model/law_problem.hpp"
-
-#include "law_methods.hpp"
+// Queries by the published law on fewer functions. Niakh (2022): (3.52), (3.54).
+#include "../law_methods.hpp"
+#include "queries.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/model/published/collocated_problem.hpp"
 
 namespace rbvi {
 
@@ -17,14 +18,6 @@ constexpr UzawaOptions uzawa_options{.max_iterations = 200000};
 
 } // namespace
 
-Matrix multiplier_coefficients(const MultiplierBasis &basis) {
-  const Matrix &a = basis.normal, &b = basis.tangential;
-  Matrix result = Matrix::Zero(a.rows() + b.rows(), a.cols() + b.cols());
-  result.topLeftCorner(a.rows(), a.cols()) = a;
-  result.bottomRightCorner(b.rows(), b.cols()) = b;
-  return result;
-}
-
 CollocatedProblem collocated_problem(const MultiplierBasis &basis, const LawAtMu &law,
                                      const BodyAtMu &body) {
   const Matrix functions = multiplier_coefficients(basis);
@@ -38,6 +31,32 @@ CollocatedProblem collocated_problem(const MultiplierBasis &basis, const LawAtMu
   return {h, functions.transpose() * law.q, basis.normal(nodes, Eigen::all),
           basis.tangential(rows, Eigen::all), bounds_at(law.laws.bound, nodes)};
 }
+
+namespace {
+
+/// On fewer functions. From the answer on them at the nearest training sample; by Uzawa's method
+/// from zero, and then never mended.
+class CollocatedSolver : public QueryMethod {
+public:
+  CollocatedSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
+                   const QueryOptions &options);
+  ReducedAnswer solve(const FullMu &mu, Relaxed relaxed) override;
+  void displace(ReducedAnswer &answer) override { at_nodes_.displace(answer); }
+
+private:
+  Vector start(const FullMu &mu);
+  CollocatedResult solve_functions(const LawAtMu &law, const Vector &start);
+  /// Whether its answer stands; if not, exact steps follow, from it if there is one.
+  bool answer_on_functions(const LawAtMu &law, const Vector &start, ReducedAnswer &answer);
+
+  const ReducedModel &model_;
+  const Scene &scene_;
+  const QueryOptions options_;
+  NodeLawSolver at_nodes_;
+  SampleStarts<Vector> starts_;
+  Vector last_;    ///< CollocatedResult::x of the last query
+  Matrix product_; ///< Gram matrix of the functions in W, for Uzawa's method
+};
 
 CollocatedSolver::CollocatedSolver(const ReducedModel &model, const Scene &scene,
                                    const Contact &contact, const QueryOptions &options)
@@ -112,6 +131,14 @@ ReducedAnswer CollocatedSolver::solve(const FullMu &mu, Relaxed relaxed) {
   const LawAtMu &law = at_nodes_.problem().at(mu, answer, {}, relaxed.beta);
   if (!answer_on_functions(law, from, answer)) at_nodes_.solve_at_nodes(law, answer);
   return answer;
+}
+
+} // namespace
+
+std::unique_ptr<QueryMethod> collocated_solver(const ReducedModel &model, const Scene &scene,
+                                               const Contact &contact,
+                                               const QueryOptions &options) {
+  return std::make_unique<CollocatedSolver>(model, scene, contact, options);
 }
 
 } // namespace rbvi

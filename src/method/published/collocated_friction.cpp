@@ -1,7 +1,7 @@
-#include "rbvi/method/collocated_friction.hpp"
+#include "rbvi/method/published/collocated_friction.hpp"
 
+#include "../pivoting.hpp"
 #include "collocated_steps.hpp"
-#include "pivoting.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 

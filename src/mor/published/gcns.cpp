@@ -1,5 +1,5 @@
 // Niakh (2022): (3.56), (3.57), Algorithm 3, Remark 3.3.2, Remark 3.3.3.
-#include "rbvi/mor/gcns.hpp"
+#include "rbvi/mor/published/gcns.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
@@ -188,11 +188,6 @@ private:
 };
 
 } // namespace
-
-const std::vector<std::string> &collocation_nodes_names() {
-  static const std::vector<std::string> names{"best", "before_rise", "all"};
-  return names;
-}
 
 Gcns select_collocation_nodes(const std::vector<GcnsSample> &samples, const Matrix &normal_basis,
                               const Matrix &tangential_basis, const SparseMatrix &product,
