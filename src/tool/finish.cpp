@@ -101,8 +101,7 @@ Invocation read_invocation(int argc, char **argv) {
     for (const char *option : {"-scene", "-case"})
       if (const auto named = std::find(given.begin(), given.end(), option); given.end() - named > 1)
         result.file = *(named + 1);
-    for (const char *page : {"-markdown", "-schema"})
-      if (has(page)) result.page = page + 1;
+    result.json = has("-json");
     if (given.size() > 1 && !is_option(given[1])) result.topic = given[1];
     given.resize(1);
     given.emplace_back("help");

@@ -128,8 +128,7 @@ void command_growth(const MeasureOptions &options) {
   const std::vector<Mu> training = checked_training(options);
   if (options.out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
   const fs::path table = options.out / "bench" / "growth.csv";
-  const fs::path page = options.out / "bench" / "growth.md";
-  check_outputs(world, options, options.mesh.file, {{"the table", table}, {"the page", page}});
+  check_outputs(world, options, options.mesh.file, {{"the table", table}});
   const std::vector<int> per_solve = groupings(options, ranks_of(world));
   for (const int number : per_solve)
     (void)Groups(world, number); // throws before anything is written
@@ -144,9 +143,7 @@ void command_growth(const MeasureOptions &options) {
     if (rank_of(world) != 0) return;
     make_directory(table.parent_path());
     write_atomically(table, growth_csv(runs));
-    write_atomically(page, growth_page(runs));
-    std::printf("%s\n", growth_page(runs).c_str());
-    print_written(std::cout, {table, page});
+    print_written(std::cout, {table});
   });
 }
 

@@ -112,10 +112,11 @@ void print_help(const Registry &registry, const std::string &scene, const std::s
   std::printf("rbvi COMMAND -case FILE [options]        (under mpirun; one dash or two)\n");
   for (const Command &known : commands())
     std::printf("  %-21s %s\n", known.name.c_str(), known.does.c_str());
-  std::printf("  COMMAND -help         usage and options of a command\n"
-              "  -help -case FILE      options, parameters and mesh of a case\n"
-              "  -help -markdown       all options, explained: the page cases/OPTIONS.md\n"
-              "  -help -schema         a JSON Schema of case files, for editors\n\n");
+  std::printf(
+      "  COMMAND -help         usage and options of a command\n"
+      "  -help -case FILE      options, parameters and mesh of a case\n"
+      "  -help -json           options, keys of case files and scenes, for programs; explained\n"
+      "                        by the page cases/OPTIONS.md\n\n");
   print_options();
   for (const SceneEntry &entry : registry.scenes)
     print_scene(entry);

@@ -4,7 +4,6 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/interrupt.hpp"
 #include "rbvi/par/session.hpp"
-#include "rbvi/scene/case.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/finish.hpp"
 
@@ -14,11 +13,9 @@ namespace rbvi {
 
 namespace {
 
-void print_page(const Invocation &invocation, const Registry &registry) {
-  if (invocation.page == "markdown")
-    std::fputs(options_page(registry).c_str(), stdout);
-  else if (invocation.page == "schema")
-    std::fputs(case_schema().c_str(), stdout);
+void command_help(const Invocation &invocation, const Registry &registry) {
+  if (invocation.json)
+    std::fputs(options_dump(registry).c_str(), stdout);
   else
     print_help(registry, invocation.file, invocation.topic);
 }
@@ -29,7 +26,7 @@ void run_command(const Invocation &invocation, const Registry &registry) {
   if (command == "list" || command == "help" || command == "inspect" || command == "new") {
     if (rank != 0) return;
     if (command == "list") command_list(invocation.file, registry);
-    if (command == "help") print_page(invocation, registry);
+    if (command == "help") command_help(invocation, registry);
     if (command == "new") command_new(invocation.file, invocation.topic);
     if (command == "inspect") command_inspect(invocation.file, registry);
     return;

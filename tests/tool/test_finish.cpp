@@ -87,8 +87,8 @@ TEST(ReadInvocation, CommandFileAndOptions) {
   EXPECT_EQ(invocation({"rbvi", "solve", "--help"}).command, "help");
   EXPECT_EQ(invocation({"rbvi", "solve", "--help"}).topic, "solve");
   EXPECT_EQ(invocation({"rbvi"}).command, "help");
-  EXPECT_EQ(invocation({"rbvi", "-help"}).page, "");
-  EXPECT_EQ(invocation({"rbvi", "--help", "--schema"}).page, "schema");
+  EXPECT_FALSE(invocation({"rbvi", "-help"}).json);
+  EXPECT_TRUE(invocation({"rbvi", "--help", "--json"}).json);
   EXPECT_EQ(invocation({"rbvi", "--version"}).status, 0);
 }
 

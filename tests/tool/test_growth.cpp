@@ -11,23 +11,6 @@
 namespace rbvi::growth_test {
 namespace {
 
-TEST(Growth, TheExponentOfAPowerLaw) {
-  const std::vector<double> dofs{100, 400, 1600};
-  std::vector<double> seconds;
-  for (const double n : dofs)
-    seconds.push_back(3 * std::pow(n, 1.5));
-  EXPECT_NEAR(growth_exponent(dofs, seconds).value(), 1.5, 1e-12);
-  seconds[1] *= 1.3; // the middle one of three has no say
-  EXPECT_NEAR(growth_exponent(dofs, seconds).value(), 1.5, 1e-12);
-}
-
-TEST(Growth, NoExponentWithoutTwoMeshes) {
-  EXPECT_FALSE(growth_exponent({100}, {1}));
-  EXPECT_FALSE(growth_exponent({100, 100}, {1, 2}));
-  EXPECT_FALSE(growth_exponent({100, 400}, {0, 2})) << "zero has no logarithm";
-  EXPECT_FALSE(growth_exponent({}, {}));
-}
-
 /// Work like dofs^1.25, memory like dofs above what is resident.
 GrowthRun run_on(int refine, int ranks_per_solve) {
   GrowthRun run;
@@ -63,25 +46,6 @@ TEST(Growth, ATableHasARowForEachStageAndRun) {
   for (; std::getline(lines, line); ++rows)
     EXPECT_EQ(split(line, ',').size(), names.size()) << line;
   EXPECT_EQ(rows, 3 * 3);
-}
-
-TEST(Growth, APageHasATableForEachNumberOfRanksPerSolve) {
-  const std::string page = growth_page({run_on(0, 1), run_on(1, 1), run_on(0, 2), run_on(1, 2)});
-  EXPECT_NE(page.find("## 1 rank per solve"), std::string::npos) << page;
-  EXPECT_NE(page.find("## 2 ranks per solve"), std::string::npos) << page;
-  const std::size_t at = page.find("| snapshots |");
-  ASSERT_NE(at, std::string::npos) << page;
-  const std::string row = page.substr(at, page.find('\n', at) - at);
-  EXPECT_NE(row.find("| 1.25 |"), std::string::npos) << "seconds: " << row;
-  EXPECT_NE(row.find("| 1.00 |"), std::string::npos) << "memory above the resident: " << row;
-  EXPECT_NE(row.find("| 7 / 7 |"), std::string::npos) << "factorisations: " << row;
-}
-
-TEST(Growth, AStageThatDidNotRunOnAMeshHasNoNumberThere) {
-  GrowthRun fine = run_on(1, 1);
-  fine.stages.pop_back();
-  const std::string page = growth_page({run_on(0, 1), fine});
-  EXPECT_NE(page.find("| 7 / - |"), std::string::npos) << page;
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// The table of options: what models keep of it, and its page.
+// The table of options: what models keep of it.
 #include "rbvi/tool/options.hpp"
 #include "tests/catalogue.hpp"
 
@@ -61,15 +61,6 @@ TEST(OptionTable, ValuesAreKeptAsText) {
   EXPECT_EQ(kept.at("pga_tolerance"), "infsup");
   EXPECT_EQ(kept.at("pga_product"), "energy");
   EXPECT_EQ(kept.at("mesh_file"), "/square.msh");
-}
-
-TEST(OptionTable, ThePageHasRangesChoicesAndScenes) {
-  const std::string page = options_page(catalogue());
-  for (const char *line :
-       {"| `-pod_tolerance` | 1e-6 | 0 to 0.5 |", "| `-mesh_refine` | 0 | integer, 0 to 6 |",
-        "| `hybrid` | hat functions", "| `-load` | -25 | [-1e+06, 1e+06] |",
-        "| `-friction_threshold` | Pa |", "| `--queries` | SET |", "`-pga_eps_`"})
-    EXPECT_NE(page.find(line), std::string::npos) << line;
 }
 
 } // namespace

@@ -46,7 +46,4 @@ struct CaseKey {
 /// All keys, by table: what is checked, explained and completed comes from here.
 const std::vector<CaseKey> &case_keys();
 
-/// A JSON Schema (draft-07) of case files, which editors complete and check them by.
-std::string case_schema();
-
 } // namespace rbvi

@@ -14,7 +14,7 @@ namespace rbvi {
 struct Invocation {
   std::string command, file;
   std::string topic; ///< help: the command that is asked about; new: the mesh
-  std::string page;  ///< help: "markdown", all options; "schema", that of case files; else ""
+  bool json = false; ///< help: as JSON
   mutable std::vector<std::string> arguments; ///< program name and options, dashes normalised
   std::optional<int> status;                  ///< set: nothing to run, exit with this
   std::string message;                        ///< printed then

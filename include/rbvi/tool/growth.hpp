@@ -4,7 +4,6 @@
 
 #include "rbvi/par/stage_cost.hpp"
 
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,15 +29,8 @@ struct GrowthRun {
 /// All stages together.
 RankCosts total_cost(const GrowthRun &run);
 
-/// The exponent p of y = c x^p by least squares of the logarithms. Nothing where fewer than two
-/// different x have positive values.
-std::optional<double> growth_exponent(const std::vector<double> &x, const std::vector<double> &y);
-
-/// A row for each run and stage, and for all of its stages together.
+/// A row for each run and stage, and for all of its stages together; cases/growth.py makes a page
+/// of it.
 std::string growth_csv(const std::vector<GrowthRun> &runs);
-
-/// For each number of ranks per solve a table: each stage over the meshes, and its exponents in
-/// dofs. Memory grows from what the process held before the first run.
-std::string growth_page(const std::vector<GrowthRun> &runs);
 
 } // namespace rbvi

@@ -1,22 +1,20 @@
-// The page cases/OPTIONS.md.
-#include "database.hpp"
-#include "table.hpp"
+#!/usr/bin/env python3
+"""pages.py RBVI options|schema: the pages that `RBVI -help -json` is the source of, on standard output.
 
-#include "rbvi/core/text.hpp"
-#include "rbvi/core/validity.hpp"
-#include "rbvi/model/online_tool.hpp"
-#include "rbvi/tool/cases.hpp"
+    python3 cases/pages.py build/bin/rbvi options > cases/OPTIONS.md
+    python3 cases/pages.py build/bin/rbvi schema > cases/case.schema.json
 
-#include <algorithm>
-#include <map>
+To be run where the folder cases is.
+"""
 
-namespace rbvi {
+import json
+import subprocess
+import sys
 
-namespace {
+INTRODUCTION = """\
+# Options
 
-constexpr const char *introduction = R"(# Options
-
-This page is printed by `rbvi -help -markdown`.
+This page is written by [pages.py](pages.py) from what `rbvi -help -json` prints.
 
 Every option of rbvi can stand in the case file, below `options:`, or on the command line, with one or
 two dashes; if it stands in both, the command line wins. Options in PETSc's own files (`~/.petscrc`, `.petscrc`,
@@ -30,61 +28,63 @@ The words of this page are explained where a group of options begins, and in the
 [glossary](README.md#glossary). Numbers in brackets are equations of Niakh (2022): u is the
 displacement, lambda the multipliers (pressure and friction stress), A and B are the matrices of the
 forms a and b, and mu is a parameter, the list of all numbers that vary.
-)";
+"""
 
-/// What the words mean that the options of a group use.
-const std::map<std::string, const char *> introductions{{"Run", R"(
+# What the words mean that the options of a group use.
+GROUPS = {
+    "Run": """
 A run has a directory. `offline` solves the full (high-fidelity) problem at the parameters of a
 training set and makes a reduced model of the answers; `verify` compares the model with full answers
 at a validation set; `bench` measures times; `solve` solves the full problem once.
-)"},
-                                                        {"High-fidelity solver", R"(
+""",
+    "High-fidelity solver": """
 The full problem is solved by a method that finds out where the bodies touch. Eliminating the
 displacement leaves a problem for the multipliers alone, with the matrix B A^-1 B^T: that problem is
 called condensed.
-)"},
-                                                        {"Large deformations", R"(
+""",
+    "Large deformations": """
 With `-kinematics large` the condition of contact depends on the displacement. It is then linearised,
 solved, and linearised again at the new state, until neither u nor the multipliers change.
-)"},
-                                                        {"Sweep", R"(
+""",
+    "Sweep": """
 The full problem is solved at all parameters of a set. The MPI ranks form groups; each group takes the
 next parameter from one queue.
-)"},
-                                                        {"Bases", R"(
+""",
+    "Bases": """
 The displacement is combined from a few modes (POD of the snapshots, which are the full answers at the
 training parameters). Pressures must not be negative: where multipliers are reduced, they are combined
 with coefficients >= 0 from the functions of a dual basis; what these can form is a cone.
-)"},
-                                                        {"Stability", R"(
+""",
+    "Stability": """
 A pair of bases determines the pressure only if its inf-sup constant beta is positive. Supremizers are
 displacements that join the modes for that purpose. beta_HF is the constant of the full problem,
 beta_on that with the supremizers of each parameter, beta_off that with one set for all parameters;
 sigma is the largest distance of the supremizers of a parameter to that set. Multipliers that are
 reduced to a cone need supremizers; the law at every node and Nitsche's method do not.
-)"},
-                                                        {"Separation", R"(
+""",
+    "Separation": """
 Matrices and vectors that depend on mu are separated: written as short sums of fixed terms times
 functions of mu, exactly where the scene says how, otherwise by empirical interpolation (EIM).
-)"},
-                                                        {"Multipliers", R"(
+""",
+    "Multipliers": """
 The law is the set of conditions at a node: no penetration, no tension, and with friction a bound on the
 tangential stress. lambda_n are the normal multipliers, lambda_tau the tangential ones. A response is the
 displacement A^-1 B^T e that a unit load on one multiplier causes. `collocated` holds the bound of
 friction at its collocation nodes alone.
-)"},
-                                                        {"Nitsche's method", R"(
+""",
+    "Nitsche's method": """
 With `-formulation nitsche` contact and friction are terms of one equation for u, without multipliers.
 Newton's method solves it; a reduced model integrates these terms by one of three rules.
-)"}};
+""",
+}
 
-constexpr const char *of_cases = R"(
+OF_CASES = """
 ## Case files
 
 A case file (YAML) is a scene: the body, what holds, loads and touches it, and the parameters of all
 that. `rbvi new NAME` writes one to begin with, `rbvi check FILE` tells every defect of one with its
-line and column, and which terms are exact; with `-run` it proves the answers below `tests:`. `rbvi
--help -schema` prints these keys as a JSON Schema, for editors.
+line and column, and which terms are exact; with `-run` it proves the answers below `tests:`.
+[case.schema.json](case.schema.json) has these keys as a JSON Schema, for editors.
 
 **Numbers are expressions** in parameters, in the names of `let:` and, where a point is meant, in x, y
 (and nx, ny, the normal, in tractions): `+ - * / ^`, comparisons, `and or not`, `condition ? a : b`, pi,
@@ -104,9 +104,9 @@ parameter there; it has no option.
 **A path** such as `contact.support.friction` leads to a value. `-set mesh.edges=200` puts one there;
 `choices:` are options of the case whose alternatives do; a variant (`-variant NAME`) does so before all
 of these. An empty value takes away what is there.
-)";
+"""
 
-constexpr const char *of_scenes = R"(
+OF_SCENES = """
 ## Scenes
 
 Each scene has options and parameters of its own. A parameter is an option, too: with two bounds,
@@ -118,18 +118,18 @@ mesh for the scene must have.
 Some scenes share options. `-degree` is that of the finite elements for the displacement. `-lumped yes`
 takes the contact integrals b and g by values at the vertices alone (vertex quadrature). `-formulation`
 writes contact with multipliers (mixed) or without them, by Nitsche's method (nitsche).
-)";
+"""
 
-constexpr const char *of_petsc = R"(
+OF_PETSC = """
 ## PETSc and SLEPc
 
 The solvers of PETSc and SLEPc take their own options behind these prefixes: `-hf_pc_type`,
 `-nitsche_snes_monitor`, `-pga_eps_view`, ... An option is refused if a solver would read it and not
 follow it, or if nothing in the run reads it. A case file may hold SLEPc's options of another command.
 Which of SLEPc's objects are needed is known in the end: a warning names options of the others.
-)";
+"""
 
-constexpr const char *of_petsc_more = R"(
+OF_PETSC_MORE = """
 Linear solvers are direct; iterative ones (`-hf_ksp_type cg`) have rtol 1e-13, that of `vi` 1e-12.
 `-nitsche_snes_rtol` [1e-12] is that of the residual relative to its terms at the start. Of PETSc itself, `-log_view`
 shows one stage per step; its own options are for the command line alone.
@@ -144,144 +144,178 @@ B V^-1 B^T x = beta^2 W x, with one factorisation of V for all parameters and on
 each, both over the ranks, and without a dense matrix. `-infsup_svd_` is of the same two constants
 elsewhere, and of all others: these take a dense matrix of the size of the contact dofs, but for verify
 where beta_HF is iterated and b only scales.
-)";
+"""
 
-constexpr const char *of_online = R"(
+OF_ONLINE = """
 ## rbvi-online
 
 `rbvi-online MODEL` alone prints what the model is. Options have one or two dashes, and
 `--name value` or `--name=value`.
-)";
+"""
 
-std::string code(const std::string &text) {
-  return std::string("`").append(text).append("`");
-}
+OPTION_HEAD = ["option", "default", "values", ""]
 
-std::string row(const std::vector<std::string> &cells) {
-  std::string text = "|";
-  for (const std::string &cell : cells) {
-    text += cell.empty() ? "" : " ";
-    for (const char c : cell)
-      text += c == '|' ? std::string("\\|") : std::string(1, c);
-    text += " |";
-  }
-  return text + "\n";
-}
 
-/// The first two lines of a table, behind an empty one.
-std::string head(const std::vector<std::string> &cells) {
-  std::string text = "\n";
-  text.append(row(cells)).append("|");
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    text += "---|";
-  return text + "\n";
-}
+def code(text):
+    return f"`{text}`"
 
-std::string option_row(const Option &option) {
-  std::vector<std::string> names;
-  for (const Choice &choice : option.choices)
-    names.push_back(code(choice.name));
-  return row({code("-" + option.name), option.default_value,
-              names.empty() ? option.values : joined(names), option.help});
-}
 
-const std::vector<std::string> option_head{"option", "default", "values", ""};
+def row(cells):
+    return "|" + "".join((" " if cell else "") + cell.replace("|", "\\|") + " |" for cell in cells) + "\n"
 
-/// What each choice of an option means.
-std::string explained(const Option &option) {
-  if (option.choices.empty()) return "";
-  std::string text = head({code("-" + option.name), ""});
-  for (const Choice &choice : option.choices)
-    text += row({code(choice.name), choice.is});
-  return text;
-}
 
-std::string tables_of_groups() {
-  std::string text, after, group;
-  for (const Option &option : tool_options()) {
-    if (option.group != group) {
-      const auto words = introductions.find(option.group);
-      text += after + "\n## " + option.group + "\n" +
-              (words == introductions.end() ? "" : words->second) + head(option_head);
-      group = option.group;
-      after.clear();
-    }
-    text += option_row(option);
-    after += explained(option);
-  }
-  return text + after;
-}
+def head(cells):
+    return "\n" + row(cells) + "|" + "---|" * len(cells) + "\n"
 
-/// "contact.*.friction" -> "`contact: NAME: friction:`"
-std::string table_title(const std::string &table) {
-  if (table.empty()) return "At the top";
-  std::string text;
-  for (const std::string &part : split(table, '.'))
-    text += (text.empty() ? "" : " ") + (part == "*" ? "NAME" : part) + ":";
-  return code(text);
-}
 
-std::string tables_of_keys() {
-  std::string text, table = "-";
-  for (const CaseKey &key : case_keys()) {
-    if (key.table != table)
-      text.append("\n")
-          .append(table_title(key.table))
-          .append("\n")
-          .append(head({"key", "value", ""}));
-    table = key.table;
-    std::string value = key.value;
-    for (std::size_t at = value.find('|'); at != std::string::npos; at = value.find('|', at + 3))
-      value.replace(at, 1, "or");
-    text += row({code(key.name == "*" ? "NAME" : key.name), value,
-                 key.says + (key.needed ? (key.says.empty() ? "needed" : "; needed") : "")});
-  }
-  return text;
-}
+def option_row(option):
+    names = ", ".join(code(choice["name"]) for choice in option["choices"])
+    return row([code("-" + option["name"]), option["default"], names or option["values"], option["help"]])
 
-std::string table_of_parameters(const SceneEntry &entry) {
-  std::string text =
-      head({"parameter", "unit", "box", "value while fixed", "range of validity", ""});
-  for (const auto &[p, choice] : parameters_of(entry))
-    text +=
-        row({code("-" + p.name), p.unit, p.lower < p.upper ? describe(Range{p.lower, p.upper}) : "",
-             short_number(p.value), describe(p.valid), choice.empty() ? "" : "with " + choice});
-  const Scene scene = make_scene(entry);
-  return text + "\nFree by default: " + names_of(scene.parameters) + "; `-train " + scene.training +
-         "`, `-valid " + scene.validation + "`.\n";
-}
 
-std::string section_of(const SceneEntry &entry) {
-  std::string text = "\n### " + entry.name + "\n\n" + entry.summary + ".\n" + head(option_head);
-  for (const SceneOption &option : entry.options)
-    text += option_row(described(option));
-  return text + table_of_parameters(entry);
-}
+def explained(option):
+    """What each choice of an option means."""
+    if not option["choices"]:
+        return ""
+    return head([code("-" + option["name"]), ""]) + "".join(
+        row([code(choice["name"]), choice["is"]]) for choice in option["choices"])
 
-std::string table_of_prefixes() {
-  std::string text = head({"prefix", "of"});
-  for (const SolverPrefix &solver : solver_objects()) {
-    std::vector<std::string> kinds;
-    for (const std::string &kind : solver.kinds)
-      kinds.push_back(code(std::string("-").append(solver.prefix).append(kind)));
-    text += row({joined(kinds), solver.of});
-  }
-  return text;
-}
 
-} // namespace
+def tables_of_groups(options):
+    text = after = group = ""
+    for option in options:
+        if option["group"] != group:
+            group = option["group"]
+            text += after + f"\n## {group}\n" + GROUPS.get(group, "") + head(OPTION_HEAD)
+            after = ""
+        text += option_row(option)
+        after += explained(option)
+    return text + after
 
-std::string options_page(const Registry &registry) {
-  std::string text = introduction + tables_of_groups() + of_cases + tables_of_keys() + of_scenes;
-  for (const SceneEntry &entry : registry.scenes)
-    text += section_of(entry);
-  for (const SceneEntry &entry : cases_in("cases"))
-    text += section_of(entry);
-  text += of_petsc + table_of_prefixes() + of_petsc_more + of_online;
-  text += head({"option", "value", ""});
-  for (const OnlineOption &option : online_options())
-    text += row({code("--" + option.name), option.values, option.help});
-  return text;
-}
 
-} // namespace rbvi
+def table_title(table):
+    """contact.*.friction -> `contact: NAME: friction:`"""
+    if not table:
+        return "At the top"
+    return code(" ".join(("NAME" if part == "*" else part) + ":" for part in table.split(".")))
+
+
+def tables_of_keys(keys):
+    text, table = "", None
+    for key in keys:
+        if key["table"] != table:
+            table = key["table"]
+            text += f"\n{table_title(table)}\n" + head(["key", "value", ""])
+        says = "; ".join(part for part in (key["says"], "needed" if key["needed"] else "") if part)
+        text += row([code("NAME" if key["name"] == "*" else key["name"]),
+                     key["value"].replace("|", "or"), says])
+    return text
+
+
+def section_of(scene):
+    text = f"\n### {scene['name']}\n\n{scene['summary']}.\n" + head(OPTION_HEAD)
+    text += "".join(map(option_row, scene["options"]))
+    text += head(["parameter", "unit", "box", "value while fixed", "range of validity", ""])
+    for p in scene["parameters"]:
+        text += row([code("-" + p["name"]), p["unit"], p["box"], p["value"], p["valid"],
+                     "with " + p["with"] if p["with"] else ""])
+    return text + (f"\nFree by default: {scene['free']}; `-train {scene['training']}`, "
+                   f"`-valid {scene['validation']}`.\n")
+
+
+def table_of_solvers(solvers):
+    return head(["prefix", "of"]) + "".join(
+        row([", ".join(code("-" + solver["prefix"] + kind) for kind in solver["kinds"]), solver["of"]])
+        for solver in solvers)
+
+
+def options_page(dump):
+    online = head(["option", "value", ""]) + "".join(
+        row([code("--" + option["name"]), option["values"], option["help"]]) for option in dump["online"])
+    return (INTRODUCTION + tables_of_groups(dump["options"]) + OF_CASES + tables_of_keys(dump["keys"])
+            + OF_SCENES + "".join(map(section_of, dump["scenes"])) + OF_PETSC
+            + table_of_solvers(dump["solvers"]) + OF_PETSC_MORE + OF_ONLINE + online)
+
+
+def json_object(members):
+    """On one line if it is short, else a member on each. Values are JSON."""
+    parts = [f"{json.dumps(name)}: {value}" for name, value in members]
+    line = "{" + ", ".join(parts) + "}"
+    if len(line) < 90 and "\n" not in line:
+        return line
+    return "{" + ("\n" + ",\n".join(parts)).replace("\n", "\n  ") + "\n}"
+
+
+def one_of(alternatives):
+    """YAML takes yes and no for words or, in its version 1.1, for what is true and false."""
+    words = []
+    for word in map(str.strip, alternatives.split("|")):
+        words.append(word if word[0].isdigit() else json.dumps(word))
+        words += {"yes": ["true"], "no": ["false"]}.get(word, [])
+    return [("enum", "[" + ", ".join(words) + "]")]
+
+
+def members_of(value):
+    """What the words of the table of keys allow."""
+    if value == "anything":
+        return []
+    is_open = "expression" in value or "parameter" in value
+    if (" | " in value and "[" not in value and not is_open) or value == "1":
+        return one_of(value)
+    types = []
+    if not value.startswith("[") and value != "table":
+        types = ["string", "number"]
+        if not value.startswith("expression") and value != "number":
+            types.append("boolean")
+    if "table" in value:
+        types += ["object", "null"]
+    if any(word in value for word in ("[", "expressions", "names", "regions", "boundaries", "list")):
+        types.append("array")
+    members = [("type", json.dumps(types[0] if len(types) == 1 else types))]
+    if "[" in value:
+        items = value[value.index("[") + 1:value.index("]")].split(",")
+        members += [("items", json_object(members_of(items[0].strip()))),
+                    ("minItems", len(items)), ("maxItems", len(items))]
+    return members
+
+
+def members_of_table(keys, table):
+    """The keys of a table; those of its entries where their names are the author's."""
+    entries = table + ".*"
+    if any(key["table"] == entries for key in keys):
+        entry = [("type", json.dumps("object"))] + members_of_table(keys, entries)
+        return [("additionalProperties", json_object(entry))]
+    properties, needed, others = [], [], "false"
+    for key in keys:
+        if key["table"] != table:
+            continue
+        own = members_of(key["value"])
+        if key["says"]:
+            own.append(("description", json.dumps(key["says"])))
+        own += members_of_table(keys, (table + "." if table else "") + key["name"])
+        if key["name"] == "*":
+            others = json_object(own)
+        else:
+            properties.append((key["name"], json_object(own)))
+        if key["needed"]:
+            needed.append(key["name"])
+    if not properties and others == "false":
+        return []
+    return ([("properties", json_object(properties))] * bool(properties)
+            + [("required", json.dumps(needed))] * bool(needed) + [("additionalProperties", others)])
+
+
+def schema(dump):
+    """A JSON Schema (draft-07) of case files, which editors complete and check them by."""
+    return json_object([("$schema", json.dumps("http://json-schema.org/draft-07/schema#")),
+                        ("title", json.dumps("rbvi case file")), ("type", json.dumps("object"))]
+                       + members_of_table(dump["keys"], "")) + "\n"
+
+
+def main(rbvi, page):
+    dump = json.loads(subprocess.run([rbvi, "-help", "-json"], check=True, capture_output=True).stdout)
+    sys.stdout.write({"options": options_page, "schema": schema}[page](dump))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
