@@ -26,12 +26,13 @@ enum Precedence {
 };
 
 struct Spelling {
-  std::string text;
+  const char *text;
   Precedence precedence; ///< of_operand: a function
 };
 
 /// In the order of the operations, negate first.
-const std::array<Spelling, 40> spellings{{
+constexpr std::array<Spelling, 40> spellings{{
+    // known before other constants are made
     // clang-format off
     {"-", of_sign}, {"not", of_not}, {"sqrt", of_operand}, {"cbrt", of_operand},
     {"exp", of_operand}, {"log", of_operand}, {"log10", of_operand}, {"log2", of_operand},
@@ -239,7 +240,7 @@ struct Parser {
     if (operation == Operation::number) {
       std::vector<std::string> known;
       for (const Spelling &one : spellings)
-        if (one.precedence == of_operand) known.push_back(one.text);
+        if (one.precedence == of_operand) known.emplace_back(one.text);
       refuse(column, "unknown function '" + function.substr(0, 40) + "': the nearest is '" +
                          nearest_name(function.substr(0, 40), known) + "'");
     }
@@ -295,7 +296,8 @@ std::string Expression::text() const {
                        of_operand, operation});
       continue;
     }
-    const auto &[name, precedence] = spelling(operation);
+    const auto &[word, precedence] = spelling(operation);
+    const std::string name = word;
     Written *of = stack.data() + stack.size() - operands;
     Written all{"", precedence, operation};
     if (operands == 3)
