@@ -157,17 +157,17 @@ bool holds_of_slopes(const Reader &reader, const Scene &scene, const Holds &hold
   for (const Expression &component : components)
     bound.push_back(bound_to(component, names, {"x", "y"}));
   std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> unit(0, 1);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
   constexpr int points = 400;
   for (int i = 0; i < points; ++i) {
     std::vector<double> at;
     for (const Parameter &parameter : scene.parameters.all)
-      at.push_back(parameter.lower + unit(random) * (parameter.upper - parameter.lower));
+      at.push_back(parameter.lower + unit() * (parameter.upper - parameter.lower));
     // Bodies are of any size: six decades of it about 1.
-    const double size = std::pow(10, 6 * unit(random) - 3), angle = 2 * M_PI * unit(random);
+    const double size = std::pow(10, 6 * unit() - 3), angle = 2 * M_PI * unit();
     at.insert(at.end(), {size * std::cos(angle), size * std::sin(angle), 0});
     for (std::size_t c = 0; c < conditions.size(); ++c)
-      at.push_back(unit(random) < 0.5 ? 0 : 1);
+      at.push_back(unit() < 0.5 ? 0 : 1);
     Point by_x{}, by_y{};
     for (std::size_t c = 0; c < 2; ++c) {
       double value;
