@@ -73,12 +73,19 @@ def free_parameters(run):
         return [(names[i], units[i]) for i in np.ravel(model["parameters/free"][()]).astype(int)]
 
 
-def contact_names(run):
-    """Number, from 1, -> name of the contacts of the model that have one."""
+def tree_of(run):
+    """(names of its path, text) of each value of the case that the model was made of."""
     with h5py.File(model_of(run), "r") as model:
-        lines = dict(zip(*(texts_in(model, "scene/functions/" + what) for what in ("names", "values"))))
-    ends = re.compile(r"contact_(\d+)=name")
-    return {int(found[1]) + 1: lines[found[0]] for found in map(ends.fullmatch, lines) if found}
+        lines = model["scene/tree"].asstr()[()].splitlines()
+    found = [re.match(r"((?:\\.|[^\\:])*): (.*)", line) for line in lines]
+    names = [re.findall(r"(?:\\.|[^\\.])+", line[1]) for line in found]
+    return [([re.sub(r"\\(.)", r"\1", name) for name in path], line[2]) for path, line in zip(names, found)]
+
+
+def contact_names(run):
+    """Number, from 1, -> name of the contacts of the model."""
+    names = dict.fromkeys(path[1] for path, _ in tree_of(run) if path[0] == "contact")
+    return dict(enumerate(names, 1))
 
 
 UNITS = {"length": "m", "stress": "Pa"}  # of what is drawn: use_units()
@@ -94,12 +101,11 @@ def use_units(source):
             UNITS["length"] = units["points"]
             UNITS["stress"] = units.get("von_mises", UNITS["stress"])
             return
-        with h5py.File(model_of(source), "r") as model:
-            lines = dict(zip(*(texts_in(model, "scene/functions/" + what)
-                               for what in ("names", "values"))))
+        declared = {path[1]: text for path, text in tree_of(source) if path[0] == "units"}
     except (Missing, OSError, KeyError):
         return
-    length, force = map(int, lines.get(":units", "0 0").split()[:2])
+    powers = {prefix: power for power, prefix in PREFIXES.items()}
+    length, force = (powers[declared.get(*of)[:-1]] for of in (("length", "m"), ("force", "N")))
     for name, unit, power in (("length", "m", length), ("stress", "Pa", force - 2 * length)):
         UNITS[name] = PREFIXES.get(power, f"1e{power} ") + unit
 

@@ -5,7 +5,7 @@
 
 namespace rbvi {
 
-/// What the library knows, and the scenes of cases/*/case.yaml.
+/// The scenes of some of cases/*/case.yaml.
 const Registry &catalogue();
 
 /// The scene of a case.
@@ -13,5 +13,7 @@ Scene make_scene(const std::string &name, const SceneOptions &options = {});
 
 /// Each of the cases as it is, and with each choice of each of its options that needs no other.
 std::vector<Scene> every_choice();
+/// The same of all cases, those with meshes from files too, and each of their variants.
+std::vector<Scene> every_variant();
 
 } // namespace rbvi

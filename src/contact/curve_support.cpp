@@ -384,7 +384,6 @@ ContactRecipe by_multipliers(const RigidContact &rigid) {
   recipe.make = [rigid](const Scene &scene, InterfaceMesh mesh) {
     return std::make_unique<CurveSupport>(scene, std::move(mesh), rigid);
   };
-  recipe.record = rigid.record;
   return recipe;
 }
 

@@ -8,7 +8,7 @@ namespace rbvi {
 FrictionBound friction_bound(const Friction &friction, const FullMu &all_parameters) {
   FrictionBound bound;
   if (friction.law == FrictionLaw::none) return bound;
-  const auto at_mu = [&](const Named<Coefficient> &number, const char *what) {
+  const auto at_mu = [&](const std::function<Coefficient> &number, const char *what) {
     const double value = number(all_parameters);
     if (!(value >= 0))
       throw failure("the " + std::string(what) + " is " + short_number(value) +
@@ -29,29 +29,6 @@ void add_friction(const Friction &friction, ContactRecipe &recipe) {
       {friction.law == FrictionLaw::coulomb ? "coefficient of friction" : "threshold of friction",
        friction.value});
   if (friction.limit) recipe.coefficients.push_back({"limit of friction", friction.limit});
-}
-
-void add_friction(const Friction &friction, Record &record) {
-  if (friction.law == FrictionLaw::none) return;
-  Record &part = record.parts["friction"];
-  part.name = friction.law == FrictionLaw::coulomb ? "coulomb" : "tresca";
-  part.numbers["only_in_contact"] = {friction.only_in_contact ? 1.0 : 0.0};
-  part.parts["value"] = friction.value.record;
-  if (friction.limit) part.parts["limit"] = friction.limit.record;
-}
-
-Friction friction_in(const Stored &of) {
-  if (!of.record.parts.contains("friction")) return {};
-  const Stored friction = part(of, "friction");
-  const std::string &law = friction.record.name;
-  if (law != "coulomb" && law != "tresca")
-    throw bad_input("friction '" + law + "' is not in this build: make the model again");
-  Friction result{law == "coulomb" ? FrictionLaw::coulomb : FrictionLaw::tresca,
-                  made<Coefficient>(part(friction, "value")),
-                  number(friction, "only_in_contact") != 0};
-  if (friction.record.parts.contains("limit"))
-    result.limit = made<Coefficient>(part(friction, "limit"));
-  return result;
 }
 
 } // namespace rbvi

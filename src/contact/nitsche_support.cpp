@@ -103,22 +103,6 @@ private:
   std::vector<std::array<Index, 2>> ends_; ///< the vertices of each edge
 };
 
-/// "rigid_support" -> "nitsche_support", ...
-std::string nitsche_name(const std::string &name) {
-  return "nitsche_" + name.substr(name.starts_with("rigid_") ? 6 : 0);
-}
-
-/// `name`, and of Nitsche's method: of what `thing` makes of a record.
-template <class Thing>
-void add_kinds(const std::string &name, int version, Thing (*thing)(const Stored &),
-               std::vector<ContactKind> &kinds) {
-  kinds.push_back(
-      {name, 1, [thing](const Stored &of) { return by_multipliers(rigid_contact(thing(of))); }});
-  kinds.push_back({nitsche_name(name), version, [thing](const Stored &of) {
-                     return by_nitsche(rigid_contact(thing(of)), number(of, "gamma0"));
-                   }});
-}
-
 } // namespace
 
 NitscheLayer layer_of(const Contact &contact) {
@@ -156,20 +140,7 @@ ContactRecipe by_nitsche(const RigidContact &rigid, double gamma0) {
     return std::make_unique<NitscheInterface>(scene, std::move(mesh),
                                               NitscheCurve{rigid.friction, rigid.facing, gamma0});
   };
-  recipe.record = rigid.record;
-  recipe.record.name = nitsche_name(rigid.record.name);
-  // 1: of a support the stress was on the normal of contact.
-  recipe.record.version = rigid.facing.follows_state ? 1 : 2;
-  recipe.record.numbers["gamma0"] = {gamma0};
   return recipe;
-}
-
-std::vector<ContactKind> rigid_kinds() {
-  std::vector<ContactKind> kinds;
-  add_kinds("rigid_support", 2, support_in, kinds);
-  add_kinds("half_plane", 2, half_plane_in, kinds);
-  add_kinds("rigid_surface", 1, surface_in, kinds);
-  return kinds;
 }
 
 } // namespace rbvi

@@ -146,19 +146,7 @@ ContactRecipe obstacle(Obstacle obstacle) {
   recipe.make = [obstacle](const Scene &scene, InterfaceMesh mesh) {
     return std::make_unique<ObstacleInterface>(scene, std::move(mesh), obstacle);
   };
-  recipe.record = {"obstacle",
-                   1,
-                   {{"lumped", {obstacle.lumped ? 1.0 : 0.0}}},
-                   {{"region", obstacle.region}},
-                   {{"height", obstacle.height.record}}};
   return recipe;
-}
-
-ContactKind obstacle_kind() {
-  return {"obstacle", 1, [](const Stored &of) {
-            return obstacle({text(of, "region"), made<PointValue>(part(of, "height")),
-                             number(of, "lumped") != 0});
-          }};
 }
 
 } // namespace rbvi

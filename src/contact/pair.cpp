@@ -364,30 +364,7 @@ ContactRecipe two_bodies(Pair pair) {
   recipe.make = [pair](const Scene &scene, InterfaceMesh mesh) {
     return std::make_unique<PairInterface>(scene, std::move(mesh), pair);
   };
-  const auto &[multiplier, quadrature, projection] = pair.discretisation;
-  recipe.record = {"two_bodies",
-                   4,
-                   {{"linear_pressure", {multiplier == MultiplierSpace::nodes ? 1.0 : 0.0}},
-                    {"direct", {quadrature == PairQuadrature::direct ? 1.0 : 0.0}},
-                    {"vertical", {projection == PairProjection::vertical ? 1.0 : 0.0}},
-                    {"large", {pair.large ? 1.0 : 0.0}}},
-                   {{"slave", pair.slave}, {"master", pair.master}}};
-  add_friction(pair.friction, recipe.record);
   return recipe;
-}
-
-ContactKind two_bodies_kind() {
-  return {"two_bodies", 4, [](const Stored &of) {
-            const auto is = [&](const char *name) { return number(of, name) != 0; };
-            return two_bodies(
-                {text(of, "slave"),
-                 text(of, "master"),
-                 {is("linear_pressure") ? MultiplierSpace::nodes : MultiplierSpace::macro_edges,
-                  is("direct") ? PairQuadrature::direct : PairQuadrature::intersection,
-                  is("vertical") ? PairProjection::vertical : PairProjection::normal},
-                 is("large"),
-                 friction_in(of)});
-          }};
 }
 
 } // namespace rbvi

@@ -17,22 +17,6 @@ Point normal_of(const HalfPlane &plane, const FullMu &mu) {
   return {c * plane.normal[0] - s * plane.normal[1], s * plane.normal[0] + c * plane.normal[1], 0};
 }
 
-Record record_of(const HalfPlane &plane) {
-  const auto coordinates = [](const Point &x) { return std::vector<double>(x.begin(), x.end()); };
-  Record record{"half_plane",
-                1,
-                {{"normal", coordinates(plane.normal)},
-                 {"pivot", coordinates(plane.pivot)},
-                 {"lumped", {plane.lumped ? 1.0 : 0.0}}},
-                {{"boundary", plane.boundary}},
-                {{"position", plane.position.record}}};
-  if (plane.tilt) record.parts["tilt"] = plane.tilt.record;
-  if (plane.surface) record.parts["surface"] = plane.surface.record;
-  if (plane.body_normal) record.parts["body_normal"] = plane.body_normal.record;
-  add_friction(plane.friction, record);
-  return record;
-}
-
 /// What a point faces along its normal; distance(mu, x, normal) without the motion.
 template <class Distance>
 auto faced(const std::function<PointMap> &normal, const Distance &distance) {
@@ -46,15 +30,7 @@ auto faced(const std::function<PointMap> &normal, const Distance &distance) {
 } // namespace
 
 RigidContact rigid_contact(const Support &support) {
-  RigidContact rigid{support.boundary,
-                     {},
-                     support.friction,
-                     support.lumped,
-                     {"rigid_support",
-                      1,
-                      {{"lumped", {support.lumped ? 1.0 : 0.0}}},
-                      {{"boundary", support.boundary}},
-                      {{"normal", support.normal.record}, {"gap", support.gap.record}}}};
+  RigidContact rigid{support.boundary, {}, support.friction, support.lumped};
   if (const auto *to_surface = support.gap.target<GapToSurface>()) { // it needs no other normal
     rigid.facing.at =
         faced(support.normal, [to = *to_surface](const FullMu &mu, const Point &x, const Point &n) {
@@ -76,8 +52,6 @@ RigidContact rigid_contact(const Support &support) {
   rigid.facing.normal = support.normal;
   rigid.facing.asks_place = false;
   rigid.facing.body_normal = support.body_normal;
-  if (support.body_normal) rigid.record.parts["body_normal"] = support.body_normal.record;
-  add_friction(support.friction, rigid.record);
   return rigid;
 }
 
@@ -145,31 +119,6 @@ Grid support_fields(const ContactInterface &interface, const Scene &scene, const
   return grid;
 }
 
-Support support_in(const Stored &of) {
-  Support support{text(of, "boundary"), made<PointMap>(part(of, "normal")),
-                  made<PointValue>(part(of, "gap")), friction_in(of), number(of, "lumped") != 0};
-  if (of.record.parts.contains("body_normal"))
-    support.body_normal = made<PointMap>(part(of, "body_normal"));
-  return support;
-}
-
-HalfPlane half_plane_in(const Stored &of) {
-  const auto point = [&](const std::string &name) -> Point {
-    const std::vector<double> &x = numbers(of, name);
-    if (x.size() != 3) throw bad_input("'" + name + "' of a half-plane is not three numbers");
-    return {x[0], x[1], x[2]};
-  };
-  HalfPlane plane{text(of, "boundary"), point("normal"), point("pivot"),
-                  made<Coefficient>(part(of, "position"))};
-  if (of.record.parts.contains("tilt")) plane.tilt = made<Coefficient>(part(of, "tilt"));
-  if (of.record.parts.contains("surface")) plane.surface = made<PointMap>(part(of, "surface"));
-  plane.friction = friction_in(of);
-  plane.lumped = number(of, "lumped") != 0;
-  if (of.record.parts.contains("body_normal"))
-    plane.body_normal = made<PointMap>(part(of, "body_normal"));
-  return plane;
-}
-
 RigidContact rigid_contact(const HalfPlane &plane) {
   const double length = std::hypot(plane.normal[0], plane.normal[1], plane.normal[2]);
   if (!(std::abs(length - 1) <= 1e-12) || plane.normal[2] != 0)
@@ -177,7 +126,7 @@ RigidContact rigid_contact(const HalfPlane &plane) {
                     short_number(plane.normal[0]) + ", " + short_number(plane.normal[1]) + ", " +
                     short_number(plane.normal[2]) +
                     "): give one of length 1 in the plane of x and y");
-  RigidContact rigid{plane.boundary, {}, plane.friction, plane.lumped, record_of(plane)};
+  RigidContact rigid{plane.boundary, {}, plane.friction, plane.lumped};
   rigid.facing.at = [plane](const FullMu &mu, const PlacedPoint &point, const Point &) {
     const Point n = normal_of(plane, mu);
     const double gap = plane.position(mu) - (point.y[0] - plane.pivot[0]) * n[0] -
@@ -193,15 +142,7 @@ RigidContact rigid_contact(const HalfPlane &plane) {
 }
 
 RigidContact rigid_contact(const RigidSurface &surface) {
-  RigidContact rigid{surface.boundary,
-                     {},
-                     surface.friction,
-                     surface.lumped,
-                     {"rigid_surface",
-                      1,
-                      {{"lumped", {surface.lumped ? 1.0 : 0.0}}},
-                      {{"boundary", surface.boundary}},
-                      {{"surface", surface.surface.record}}}};
+  RigidContact rigid{surface.boundary, {}, surface.friction, surface.lumped};
   rigid.facing.at = [faced = surface.surface](const FullMu &mu, const PlacedPoint &point,
                                               const Point &displacement) {
     const SurfacePoint below =
@@ -214,20 +155,7 @@ RigidContact rigid_contact(const RigidSurface &surface) {
   rigid.facing.follows_state = true;
   rigid.facing.body_normal = surface.body_normal;
   rigid.facing.along_body = bool(surface.body_normal);
-  if (surface.at_rest) rigid.record.parts["at_rest"] = surface.at_rest.record;
-  if (surface.body_normal) rigid.record.parts["body_normal"] = surface.body_normal.record;
-  add_friction(surface.friction, rigid.record);
   return rigid;
-}
-
-RigidSurface surface_in(const Stored &of) {
-  RigidSurface surface{text(of, "boundary"), made<Surface>(part(of, "surface"))};
-  if (of.record.parts.contains("at_rest")) surface.at_rest = made<PointMap>(part(of, "at_rest"));
-  if (of.record.parts.contains("body_normal"))
-    surface.body_normal = made<PointMap>(part(of, "body_normal"));
-  surface.friction = friction_in(of);
-  surface.lumped = number(of, "lumped") != 0;
-  return surface;
 }
 
 } // namespace rbvi

@@ -18,28 +18,6 @@ const Circle &nearest_circle(const std::vector<Circle> &circles, const Point &x)
   return *nearest;
 }
 
-std::map<std::string, std::vector<double>> numbers_of(const std::vector<Circle> &circles) {
-  std::map<std::string, std::vector<double>> numbers;
-  for (const Circle &circle : circles) {
-    numbers["x"].push_back(circle.centre[0]);
-    numbers["y"].push_back(circle.centre[1]);
-    numbers["radius"].push_back(circle.radius);
-    numbers["hole"].push_back(circle.hole ? 1 : 0);
-  }
-  return numbers;
-}
-
-std::vector<Circle> circles_in(const Record &of) {
-  const std::vector<double> &x = numbers(of, "x"), &y = numbers(of, "y"),
-                            &radius = numbers(of, "radius"), &hole = numbers(of, "hole");
-  if (x.empty() || y.size() != x.size() || radius.size() != x.size() || hole.size() != x.size())
-    throw bad_input("the circles of '" + of.name + "' are not three lists of one length");
-  std::vector<Circle> circles;
-  for (std::size_t i = 0; i < x.size(); ++i)
-    circles.push_back({{x[i], y[i], 0}, radius[i], hole[i] != 0});
-  return circles;
-}
-
 Point on_circle(const Circle &circle, const Point &x) {
   const Point out = x - circle.centre;
   return circle.centre + circle.radius / norm(out) * out;
@@ -55,41 +33,6 @@ Point normal_of_circle(const Circle &circle, const Point &x) {
   return (circle.hole ? -1 : 1) / norm(out) * out;
 }
 
-const Maker<PointMap> on_circles_maker{
-    "on_circles", 1, [](const Record &of) -> std::function<PointMap> {
-      if (numbers(of, "x").size() == 1) return OnCircle{circles_in(of).front()};
-      return [circles = circles_in(of)](const FullMu &, const Point &x) {
-        return on_circles(circles, x);
-      };
-    }};
-
-const Maker<PointMap> circle_normals_maker{
-    "normals_of_circles", 1, [](const Record &of) -> std::function<PointMap> {
-      if (numbers(of, "x").size() == 1)
-        return [circle = circles_in(of).front()](const FullMu &, const Point &x) {
-          return normal_of_circle(circle, x);
-        };
-      return [circles = circles_in(of)](const FullMu &, const Point &x) {
-        return normal_of_circle(nearest_circle(circles, x), x);
-      };
-    }};
-
-std::function<PointMap> composition(const std::function<PointMap> &outer,
-                                    const std::function<PointMap> &inner) {
-  const auto *scaling = outer.target<Scaling>();
-  const auto *circle = inner.target<OnCircle>();
-  if (scaling != nullptr && circle != nullptr)
-    return [scaling = *scaling, circle = *circle](const FullMu &mu, const Point &x) {
-      return scaling(mu, circle(mu, x));
-    };
-  return [=](const FullMu &mu, const Point &x) { return outer(mu, inner(mu, x)); };
-}
-
-const Maker<PointMap> composed_maker{"composed", 1, [](const Stored &of) {
-                                       return composition(made<PointMap>(part(of, "outer")),
-                                                          made<PointMap>(part(of, "inner")));
-                                     }};
-
 /// Of a disk whose numbers are functions of mu of any one type.
 template <class Number> std::function<Surface> disk_of(Number x, Number y, Number radius) {
   return [=](const FullMu &mu, const Point &point) {
@@ -100,22 +43,6 @@ template <class Number> std::function<Surface> disk_of(Number x, Number y, Numbe
     return SurfacePoint{distance - radius(mu), inverse * p, inverse};
   };
 }
-
-std::function<Surface> disk_function(const std::function<Coefficient> &x,
-                                     const std::function<Coefficient> &y,
-                                     const std::function<Coefficient> &radius) {
-  const auto *of_x = x.target<AffineCoefficient>(), *of_y = y.target<AffineCoefficient>(),
-             *of_radius = radius.target<AffineCoefficient>();
-  if (of_x != nullptr && of_y != nullptr && of_radius != nullptr)
-    return disk_of(*of_x, *of_y, *of_radius);
-  return disk_of(x, y, radius);
-}
-
-const Maker<Surface> disk_maker{"disk", 1, [](const Stored &of) {
-                                  return disk_function(made<Coefficient>(part(of, "x")),
-                                                       made<Coefficient>(part(of, "y")),
-                                                       made<Coefficient>(part(of, "radius")));
-                                }};
 
 /// What phi is at a point.
 struct Level {
@@ -168,21 +95,6 @@ private:
   std::function<PointMap> phi_;
 };
 
-const Maker<Surface> level_set_maker{"level_set", 1,
-                                     [](const Stored &of) -> std::function<Surface> {
-                                       return LevelSet(made<PointMap>(part(of, "phi")));
-                                     }};
-
-std::function<PointMap> normal_function(const std::function<Surface> &surface,
-                                        const std::function<PointMap> &at) {
-  return [=](const FullMu &mu, const Point &x) { return -1.0 * surface(mu, at(mu, x)).normal; };
-}
-
-const Maker<PointMap> normal_maker{"normal_of_surface", 1, [](const Stored &of) {
-                                     return normal_function(made<Surface>(part(of, "surface")),
-                                                            made<PointMap>(part(of, "at")));
-                                   }};
-
 /// How far along a unit direction the surface is, by Newton's method: from outside a convex body it
 /// is monotone.
 double distance_along(const std::function<Surface> &surface, const FullMu &mu, const Point &from,
@@ -199,13 +111,6 @@ double distance_along(const std::function<Surface> &surface, const FullMu &mu, c
   }
   throw failure("a line from a point of the body misses the rigid surface: use 'gap: closest'");
 }
-
-const Maker<PointValue> gap_maker{
-    "gap_to_surface", 1, [](const Stored &of) -> std::function<PointValue> {
-      return GapToSurface{made<Surface>(part(of, "surface")), made<PointMap>(part(of, "at")),
-                          made<PointMap>(part(of, "normal")),
-                          static_cast<GapKind>(integer(of, "kind"))};
-    }};
 
 } // namespace
 
@@ -233,45 +138,55 @@ Point on_circles(const std::vector<Circle> &circles, const Point &x) {
   return on_circle(nearest_circle(circles, x), x);
 }
 
-Named<PointMap> on_circles(const std::vector<Circle> &circles) {
-  return on_circles_maker(numbers_of(circles));
+std::function<PointMap> on_circles(const std::vector<Circle> &circles) {
+  if (circles.size() == 1) return OnCircle{circles.front()};
+  return [circles](const FullMu &, const Point &x) { return on_circles(circles, x); };
 }
 
-Named<PointMap> normals_of_circles(const std::vector<Circle> &circles) {
-  return circle_normals_maker(numbers_of(circles));
+std::function<PointMap> normals_of_circles(const std::vector<Circle> &circles) {
+  if (circles.size() == 1)
+    return [circle = circles.front()](const FullMu &, const Point &x) {
+      return normal_of_circle(circle, x);
+    };
+  return [circles](const FullMu &, const Point &x) {
+    return normal_of_circle(nearest_circle(circles, x), x);
+  };
 }
 
-Named<PointMap> composed(const Named<PointMap> &outer, const Named<PointMap> &inner) {
-  return composed_maker.named(composition(outer, inner), {},
-                              {{"outer", outer.record}, {"inner", inner.record}});
+std::function<PointMap> composed(const std::function<PointMap> &outer,
+                                 const std::function<PointMap> &inner) {
+  const auto *scaling = outer.target<Scaling>();
+  const auto *circle = inner.target<OnCircle>();
+  if (scaling != nullptr && circle != nullptr)
+    return [scaling = *scaling, circle = *circle](const FullMu &mu, const Point &x) {
+      return scaling(mu, circle(mu, x));
+    };
+  return [=](const FullMu &mu, const Point &x) { return outer(mu, inner(mu, x)); };
 }
 
-Named<Surface> disk_surface(const Named<Coefficient> &x, const Named<Coefficient> &y,
-                            const Named<Coefficient> &radius) {
-  return disk_maker.named(disk_function(x, y, radius), {},
-                          {{"x", x.record}, {"y", y.record}, {"radius", radius.record}});
+std::function<Surface> disk_surface(const std::function<Coefficient> &x,
+                                    const std::function<Coefficient> &y,
+                                    const std::function<Coefficient> &radius) {
+  const auto *of_x = x.target<AffineCoefficient>(), *of_y = y.target<AffineCoefficient>(),
+             *of_radius = radius.target<AffineCoefficient>();
+  if (of_x != nullptr && of_y != nullptr && of_radius != nullptr)
+    return disk_of(*of_x, *of_y, *of_radius);
+  return disk_of(x, y, radius);
 }
 
-Named<Surface> level_set(const Named<PointMap> &value_and_gradient) {
-  return level_set_maker.named(LevelSet(value_and_gradient), {},
-                               {{"phi", value_and_gradient.record}});
+std::function<Surface> level_set(const std::function<PointMap> &value_and_gradient) {
+  return LevelSet(value_and_gradient);
 }
 
-Named<PointMap> normal_of_surface(const Named<Surface> &surface, const Named<PointMap> &at) {
-  return normal_maker.named(normal_function(surface, at), {},
-                            {{"surface", surface.record}, {"at", at.record}});
+std::function<PointMap> normal_of_surface(const std::function<Surface> &surface,
+                                          const std::function<PointMap> &at) {
+  return [=](const FullMu &mu, const Point &x) { return -1.0 * surface(mu, at(mu, x)).normal; };
 }
 
-Named<PointValue> gap_to_surface(const Named<Surface> &surface, const Named<PointMap> &at,
-                                 const Named<PointMap> &normal, GapKind kind) {
-  return gap_maker.named(
-      GapToSurface{surface, at, normal, kind}, {{"kind", {double(kind)}}},
-      {{"surface", surface.record}, {"at", at.record}, {"normal", normal.record}});
-}
-
-FunctionLibrary surface_functions() {
-  return {on_circles_maker, circle_normals_maker, composed_maker, disk_maker,
-          level_set_maker,  normal_maker,         gap_maker};
+std::function<PointValue> gap_to_surface(const std::function<Surface> &surface,
+                                         const std::function<PointMap> &at,
+                                         const std::function<PointMap> &normal, GapKind kind) {
+  return GapToSurface{surface, at, normal, kind};
 }
 
 } // namespace rbvi

@@ -14,7 +14,6 @@ namespace {
 
 const std::vector<std::string> coordinates{"x", "y", "z", "nx", "ny", "nz"};
 constexpr std::size_t most_parameters = 64; ///< of one formula
-constexpr int version = 1;
 
 /// What the values use: their lets with what these use, and the parameters, in their order.
 Formula without_idle(const Formula &formula) {
@@ -35,65 +34,33 @@ Formula without_idle(const Formula &formula) {
   return own;
 }
 
-/// The text of the values, the lets and the names, with the positions of the parameters.
-Record record_of_formula(const Formula &formula, const std::string &name = "expression") {
-  const Formula own = without_idle(formula);
-  Record record{name, version};
-  for (std::size_t i = 0; i < own.values.size(); ++i)
-    record.texts["value_" + std::to_string(i)] = own.values[i].text();
-  for (std::size_t i = 0; i < own.lets.size(); ++i)
-    record.texts["let_" + std::to_string(i)] = own.lets[i].name + " = " + own.lets[i].value.text();
-  record.texts["parameters"] = joined(own.parameters, " ");
-  std::vector<double> &positions = record.numbers["positions"];
-  for (const int position : dependence_of(formula))
-    positions.push_back(position);
-  return record;
-}
-
-/// "a", "b", ... of a record that has name_0, name_1, ...
-std::vector<std::string> texts_of(const Record &record, const std::string &name) {
-  std::vector<std::string> texts;
-  for (auto found = record.texts.find(name + "_0"); found != record.texts.end();
-       found = record.texts.find(name + "_" + std::to_string(texts.size())))
-    texts.push_back(found->second);
-  return texts;
-}
-
 /// So many of the coordinates.
 std::vector<std::string> first(long count) {
   return {coordinates.begin(), coordinates.begin() + count};
 }
 
-/// `at`: names that the values may have beside those of parameters; `by`: of gradients.
-BoundProgram program_of(const Record &record, const std::vector<std::string> &at,
-                        const std::vector<std::string> &by = {}) {
-  const std::vector<std::string> names = split(text(record, "parameters"), ' ');
-  if (names.size() != numbers(record, "positions").size() || names.size() > most_parameters)
-    throw bad_input("a function of the file has other parameters than positions of them");
+/// `at`: names that the values may have beside those of parameters; `by`: of gradients. Throws
+/// bad_input for a formula of too many parameters.
+BoundProgram program_of(const Formula &formula, const std::vector<std::string> &at,
+                        const std::vector<std::string> &by) {
+  const Formula own = without_idle(formula);
+  if (own.parameters.size() > most_parameters)
+    throw bad_input("a formula depends on more than " + std::to_string(most_parameters) +
+                    " parameters");
   Lets lets;
-  for (const std::string &line : texts_of(record, "let")) {
-    const std::size_t equals = line.find(" = ");
-    if (equals == std::string::npos) throw bad_input("a function of the file has a let without =");
-    lets.emplace_back(line.substr(0, equals), parse_expression(line.substr(equals + 3)));
-  }
-  std::vector<Expression> values;
-  for (const std::string &value : texts_of(record, "value"))
-    values.push_back(parse_expression(value));
-  return bound_program(lets, values, names, at, by);
+  for (const auto &[name, value] : own.lets)
+    lets.emplace_back(name, value);
+  return bound_program(lets, own.values, own.parameters, at, by);
 }
 
-/// Evaluates the values of a record at a point.
+/// Evaluates the values of a formula at a point.
 class Evaluator {
 public:
-  /// Throws bad_input unless it has `least` to `most` values.
-  Evaluator(const Record &record, const std::vector<std::string> &at, std::size_t least,
-            std::size_t most, const std::vector<std::string> &by = {})
-      : size_(texts_of(record, "value").size()), program_(program_of(record, at, by)) {
-    for (const double position : numbers(record, "positions"))
+  Evaluator(const Formula &formula, const std::vector<std::string> &at,
+            const std::vector<std::string> &by = {})
+      : size_(formula.values.size()), program_(program_of(formula, at, by)) {
+    for (const int position : dependence_of(formula))
       positions_.push_back(static_cast<std::size_t>(position));
-    if (size_ < least || size_ > most)
-      throw bad_input("an expression of the file has " + counted(long(size_), "value") + " where " +
-                      std::to_string(most) + " are asked for");
   }
 
   std::size_t size() const { return size_; }
@@ -122,32 +89,6 @@ private:
   std::vector<std::size_t> positions_;
 };
 
-const Maker<Coefficient> expression_coefficient_maker{
-    "expression", version, [](const Record &of) -> std::function<Coefficient> {
-      return [own = Evaluator(of, first(0), 1, 1)](const FullMu &mu) {
-        double value;
-        own(mu, nullptr, &value);
-        return value;
-      };
-    }};
-
-const Maker<PointValue> expression_value_maker{
-    "expression", version, [](const Record &of) -> std::function<PointValue> {
-      return [own = Evaluator(of, first(3), 1, 1)](const FullMu &mu, const Point &x) {
-        double value;
-        own(mu, x.data(), &value);
-        return value;
-      };
-    }};
-
-const Maker<FieldValues> expression_fields_maker{
-    "expression", version, [](const Record &of) -> std::function<FieldValues> {
-      return [own = Evaluator(of, output_fields(), 2, 2)](const FullMu &mu, const double *fields,
-                                                          std::size_t count, double *results) {
-        own(mu, fields, results, count);
-      };
-    }};
-
 struct ExpressionMap {
   Evaluator own;
   Point operator()(const FullMu &mu, const Point &x) const {
@@ -156,31 +97,6 @@ struct ExpressionMap {
     return value;
   }
 };
-
-const Maker<PointMap> expression_map_maker{"expression", version,
-                                           [](const Record &of) -> std::function<PointMap> {
-                                             return ExpressionMap{Evaluator(of, first(3), 1, 3)};
-                                           }};
-
-const Maker<PointMap> gradient_maker{
-    "expression_with_gradient", version, [](const Record &of) -> std::function<PointMap> {
-      return [own = Evaluator(of, first(3), 1, 1, first(2))](const FullMu &mu, const Point &x) {
-        Point value{};
-        own.with_gradient(mu, x.data(), value.data());
-        return value;
-      };
-    }};
-
-const Maker<Traction> expression_traction_maker{
-    "expression", version, [](const Record &of) -> std::function<Traction> {
-      return
-          [own = Evaluator(of, first(6), 1, 3)](const FullMu &mu, const Point &x, const Point &n) {
-            const std::array at{x[0], x[1], x[2], n[0], n[1], n[2]};
-            Point value{};
-            own(mu, at.data(), value.data());
-            return value;
-          };
-    }};
 
 /// "the radius {r}" -> "the radius 0.2", from the values in their order.
 std::string filled(const std::string &message, const double *values) {
@@ -205,27 +121,6 @@ std::vector<Expression> expressions_in(const std::string &message) {
     all.push_back(parse_expression(message.substr(open + 1, close - open - 1)));
   }
   return all;
-}
-
-/// The conditions come first, then the values in their messages.
-const Maker<Check> expression_check_maker{
-    "expression", version, [](const Record &of) -> std::function<Check> {
-      const Evaluator own(of, first(0), 1, 1000);
-      return [own, messages = texts_of(of, "message")](const FullMu &mu) {
-        std::vector<double> values(own.size());
-        own(mu, nullptr, values.data());
-        const double *in_message = values.data() + messages.size();
-        for (std::size_t i = 0; i < messages.size(); ++i) {
-          if (!(values[i] != 0) || values[i] != values[i])
-            throw bad_input(filled(messages[i], in_message));
-          in_message += std::ranges::count(messages[i], '{');
-        }
-      };
-    }};
-
-template <class Signature>
-Named<Signature> function_of(const Maker<Signature> &maker, Record record) {
-  return {maker.make({record}), record};
 }
 
 void check_names(const Formula &formula, const std::vector<std::string> &allowed) {
@@ -313,25 +208,33 @@ Expression expanded(const Expression &expression, const std::vector<Let> &lets) 
   return expand(expression);
 }
 
-Named<Coefficient> coefficient_of(const Formula &value) {
+std::function<Coefficient> coefficient_of(const Formula &value) {
   check_names(value, {});
   const Expression whole = expanded(value.values.front(), value.lets);
   if (whole.constant()) return constant(*whole.constant());
   if (const auto line = affine_of(whole))
     return affine(line->first, line->second, dependence_of(value).front());
-  return function_of(expression_coefficient_maker, record_of_formula(value));
+  return [own = Evaluator(value, {})](const FullMu &mu) {
+    double result;
+    own(mu, nullptr, &result);
+    return result;
+  };
 }
 
-Named<PointValue> point_value_of(const Formula &value) {
+std::function<PointValue> point_value_of(const Formula &value) {
   check_names(value, {"x", "y", "z"});
   if (!depends_on_point(value)) return everywhere(coefficient_of(value));
-  return function_of(expression_value_maker, record_of_formula(value));
+  return [own = Evaluator(value, first(3))](const FullMu &mu, const Point &x) {
+    double result;
+    own(mu, x.data(), &result);
+    return result;
+  };
 }
 
-Named<PointMap> point_map_of(const Formula &components) {
+std::function<PointMap> point_map_of(const Formula &components) {
   check_names(components, {"x", "y", "z"});
   if (!depends_on_point(components)) {
-    std::vector<Named<Coefficient>> own;
+    std::vector<std::function<Coefficient>> own;
     for (const Expression &value : components.values) {
       Formula one = components;
       one.values = {value};
@@ -339,29 +242,45 @@ Named<PointMap> point_map_of(const Formula &components) {
     }
     return everywhere(own);
   }
-  return function_of(expression_map_maker, record_of_formula(components));
+  return ExpressionMap{Evaluator(components, first(3))};
 }
 
-Named<PointMap> value_and_gradient_of(const Formula &value) {
+std::function<PointMap> value_and_gradient_of(const Formula &value) {
   check_names(value, first(3));
-  return function_of(gradient_maker, record_of_formula(value, gradient_maker.name));
+  return [own = Evaluator(value, first(3), first(2))](const FullMu &mu, const Point &x) {
+    Point result{};
+    own.with_gradient(mu, x.data(), result.data());
+    return result;
+  };
 }
 
-Named<Traction> traction_of(const Formula &components) {
+std::function<Traction> traction_of(const Formula &components) {
   check_names(components, coordinates);
-  return function_of(expression_traction_maker, record_of_formula(components));
+  return
+      [own = Evaluator(components, coordinates)](const FullMu &mu, const Point &x, const Point &n) {
+        const std::array at{x[0], x[1], x[2], n[0], n[1], n[2]};
+        Point value{};
+        own(mu, at.data(), value.data());
+        return value;
+      };
 }
 
-Named<Check> check_of(const Formula &conditions, const std::vector<std::string> &messages) {
-  Formula all = conditions;
+std::function<Check> check_of(const Formula &conditions, const std::vector<std::string> &messages) {
+  Formula all = conditions; // then the values in their messages
   for (const std::string &message : messages)
     for (const Expression &value : expressions_in(message))
       all.values.push_back(value);
   check_names(all, {});
-  Record record = record_of_formula(all);
-  for (std::size_t i = 0; i < messages.size(); ++i)
-    record.texts["message_" + std::to_string(i)] = messages[i];
-  return function_of(expression_check_maker, std::move(record));
+  return [own = Evaluator(all, {}), messages](const FullMu &mu) {
+    std::vector<double> values(own.size());
+    own(mu, nullptr, values.data());
+    const double *in_message = values.data() + messages.size();
+    for (std::size_t i = 0; i < messages.size(); ++i) {
+      if (!(values[i] != 0) || values[i] != values[i])
+        throw bad_input(filled(messages[i], in_message));
+      in_message += std::ranges::count(messages[i], '{');
+    }
+  };
 }
 
 std::vector<Point> images(const std::function<PointMap> &map, const FullMu &mu,
@@ -385,15 +304,12 @@ std::vector<Point> images(const std::function<PointMap> &map, const FullMu &mu,
   return result;
 }
 
-Named<FieldValues> field_values_of(const Formula &values) {
+std::function<FieldValues> field_values_of(const Formula &values) {
   check_names(values, output_fields());
-  return function_of(expression_fields_maker, record_of_formula(values));
-}
-
-FunctionLibrary formula_functions() {
-  return {
-      expression_coefficient_maker, expression_value_maker, expression_map_maker,   gradient_maker,
-      expression_traction_maker,    expression_check_maker, expression_fields_maker};
+  return [own = Evaluator(values, output_fields())](const FullMu &mu, const double *fields,
+                                                    std::size_t count, double *results) {
+    own(mu, fields, results, count);
+  };
 }
 
 } // namespace rbvi

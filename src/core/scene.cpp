@@ -100,7 +100,7 @@ bool constant_stiffness(const Scene &scene) {
 
 const SceneEntry &entry_of(const Registry &registry, const std::string &scene) {
   std::vector<std::string> names;
-  for (const SceneEntry &entry : registry.scenes) {
+  for (const SceneEntry &entry : registry) {
     if (entry.name == scene) return entry;
     names.push_back(entry.name);
   }
@@ -126,6 +126,8 @@ Scene make_scene(const SceneEntry &entry, const SceneOptions &options) {
   scene.summary = entry.summary;
   scene.options = resolved;
   scene.units = entry.units;
+  if (entry.version > 0)
+    scene.tree = "program: " + entry.name + "\nversion: " + std::to_string(entry.version) + "\n";
   return scene;
 }
 

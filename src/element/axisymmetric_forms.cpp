@@ -62,18 +62,11 @@ std::function<Kernel> turned_kernel(const std::function<Material> &material, int
   };
 }
 
-const Maker<Kernel> turned_elasticity_maker{
-    "axisymmetric_elasticity", 1, [](const Stored &of) {
-      return turned_kernel(made<Material>(part(of, "material")), integer(of, "degree"));
-    }};
-
 } // namespace
 
-Form axisymmetric_elasticity(const std::string &region, const Named<Material> &material,
+Form axisymmetric_elasticity(const std::string &region, const std::function<Material> &material,
                              int degree) {
-  return {region, turned_elasticity_maker.named(turned_kernel(material, degree),
-                                                {{"degree", {double(degree)}}},
-                                                {{"material", material.record}})};
+  return {region, turned_kernel(material, degree)};
 }
 
 Form axisymmetric_h1_product(double length, int degree) {
@@ -90,10 +83,6 @@ Form axisymmetric_h1_product(double length, int degree) {
 Sum h1_product_of(const Scene &scene, double length) {
   return {exact_term(scene.axisymmetric ? axisymmetric_h1_product(length, scene.degree)
                                         : h1_product(length, scene.components, scene.degree))};
-}
-
-FunctionLibrary axisymmetric_functions() {
-  return {turned_elasticity_maker};
 }
 
 } // namespace rbvi

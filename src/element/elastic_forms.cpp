@@ -71,11 +71,6 @@ std::function<Kernel> elastic_kernel(const std::function<Material> &material, in
   };
 }
 
-const Maker<Kernel> elasticity_maker{"elasticity", 1, [](const Stored &of) {
-                                       return elastic_kernel(made<Material>(part(of, "material")),
-                                                             integer(of, "degree"));
-                                     }};
-
 Lame in_plane_stress(Lame material) {
   auto &[lambda, shear] = material;
   lambda *= 2 * shear / (lambda + 2 * shear);
@@ -87,32 +82,26 @@ Lame lame_of(double young, double poisson, bool plane_stress) {
   return plane_stress ? in_plane_stress(material) : material;
 }
 
-const Maker<Material> isotropic_maker{
-    "isotropic", 1, [](const Stored &of) -> std::function<Material> {
-      return [young = made<PointValue>(part(of, "young")),
-              poisson = made<PointValue>(part(of, "poisson")),
-              plane_stress = number(of, "plane_stress") != 0](const FullMu &mu, const Point &x) {
-        return lame_of(young(mu, x), poisson(mu, x), plane_stress);
-      };
-    }};
+struct Isotropic {
+  std::function<PointValue> young, poisson;
+  bool plane_stress;
+  Lame operator()(const FullMu &mu, const Point &x) const {
+    return lame_of(young(mu, x), poisson(mu, x), plane_stress);
+  }
+};
 
-std::function<Material> of_constants(const std::function<PointValue> &lambda,
-                                     const std::function<PointValue> &shear, bool plane_stress) {
-  return [=](const FullMu &mu, const Point &x) {
+struct OfConstants {
+  std::function<PointValue> lambda, shear;
+  bool plane_stress;
+  Lame operator()(const FullMu &mu, const Point &x) const {
     const Lame material{lambda(mu, x), shear(mu, x)};
     if (!(material.shear > 0 && swelling_modulus(material, false) > 0))
       throw bad_input("Lame's constants are lambda = " + short_number(material.lambda) +
                       " and mu = " + short_number(material.shear) +
                       ": mu and 3 lambda + 2 mu must be positive");
     return plane_stress ? in_plane_stress(material) : material;
-  };
-}
-
-const Maker<Material> constants_maker{"lame_constants", 1, [](const Stored &of) {
-                                        return of_constants(made<PointValue>(part(of, "lambda")),
-                                                            made<PointValue>(part(of, "shear")),
-                                                            is_set(of, "plane_stress"));
-                                      }};
+  }
+};
 
 std::function<Kernel> strain_kernel(const std::function<PointValue> &modulus,
                                     const std::function<PointValue> &strain, int degree,
@@ -139,43 +128,6 @@ std::function<Kernel> strain_kernel(const std::function<PointValue> &modulus,
   };
 }
 
-const Maker<Kernel> strain_maker{"strain_load", 1, [](const Stored &of) {
-                                   return strain_kernel(made<PointValue>(part(of, "modulus")),
-                                                        made<PointValue>(part(of, "strain")),
-                                                        integer(of, "degree"),
-                                                        is_set(of, "axisymmetric"));
-                                 }};
-
-std::function<Material> alone(const std::function<PointValue> &factor, bool shear) {
-  return [=](const FullMu &mu, const Point &x) {
-    const double value = factor(mu, x);
-    return shear ? Lame{0, value} : Lame{value, 0};
-  };
-}
-
-const Maker<Material> alone_maker{"lame_alone", 1, [](const Stored &of) {
-                                    return alone(made<PointValue>(part(of, "factor")),
-                                                 number(of, "shear") != 0);
-                                  }};
-
-Named<Material> named_alone(const Named<PointValue> &factor, bool shear) {
-  return alone_maker.named(alone(factor, shear), {{"shear", {double(shear)}}},
-                           {{"factor", factor.record}});
-}
-
-/// One of Lame's constants.
-Maker<Coefficient> lame_maker(const std::string &name, double Lame::*constant) {
-  return {name, 2, [constant](const Stored &of) -> std::function<Coefficient> {
-            return [=, poisson = made<Coefficient>(part(of, "poisson")),
-                    plane_stress = number(of, "plane_stress") != 0](const FullMu &mu) {
-              return lame_of(1, poisson(mu), plane_stress).*constant;
-            };
-          }};
-}
-
-const Maker<Coefficient> lambda_maker = lame_maker("lame_lambda", &Lame::lambda),
-                         shear_maker = lame_maker("lame_shear", &Lame::shear);
-
 } // namespace
 
 Lame lame(double young, double poisson) {
@@ -189,67 +141,51 @@ Form elasticity(const std::string &region, const Lame &material, int degree) {
   return elasticity(region, everywhere(material), degree);
 }
 
-Form elasticity(const std::string &region, const Named<Material> &material, int degree) {
-  return {region,
-          elasticity_maker.named(elastic_kernel(material, degree), {{"degree", {double(degree)}}},
-                                 {{"material", material.record}})};
+Form elasticity(const std::string &region, const std::function<Material> &material, int degree) {
+  return {region, elastic_kernel(material, degree)};
 }
 
-Named<Material> isotropic(const Named<PointValue> &young, const Named<PointValue> &poisson,
-                          bool plane_stress) {
-  return isotropic_maker.named(
-      [=](const FullMu &mu, const Point &x) {
-        return lame_of(young(mu, x), poisson(mu, x), plane_stress);
-      },
-      {{"plane_stress", {double(plane_stress)}}},
-      {{"young", young.record}, {"poisson", poisson.record}});
+std::function<Material> isotropic(const std::function<PointValue> &young,
+                                  const std::function<PointValue> &poisson, bool plane_stress) {
+  return Isotropic{young, poisson, plane_stress};
 }
 
-Named<Material> of_lame(const Named<PointValue> &lambda, const Named<PointValue> &shear,
-                        bool plane_stress) {
-  return constants_maker.named(of_constants(lambda, shear, plane_stress),
-                               {{"plane_stress", {double(plane_stress)}}},
-                               {{"lambda", lambda.record}, {"shear", shear.record}});
+std::function<Material> of_lame(const std::function<PointValue> &lambda,
+                                const std::function<PointValue> &shear, bool plane_stress) {
+  return OfConstants{lambda, shear, plane_stress};
 }
 
 double swelling_modulus(const Lame &material, bool plane_stress) {
   return (plane_stress ? 2 : 3) * material.lambda + 2 * material.shear;
 }
 
-bool is_plane_stress(const Named<Material> &material) {
-  return is_set(material.record, "plane_stress");
+bool is_plane_stress(const std::function<Material> &material) {
+  const auto *isotropic = material.target<Isotropic>();
+  const auto *constants = material.target<OfConstants>();
+  return (isotropic != nullptr && isotropic->plane_stress) ||
+         (constants != nullptr && constants->plane_stress);
 }
 
-Form strain_load(const std::string &region, const Named<PointValue> &modulus,
-                 const Named<PointValue> &strain, int degree, bool axisymmetric) {
-  return {region, strain_maker.named(
-                      strain_kernel(modulus, strain, degree, axisymmetric),
-                      {{"degree", {double(degree)}}, {"axisymmetric", {double(axisymmetric)}}},
-                      {{"modulus", modulus.record}, {"strain", strain.record}})};
+Form strain_load(const std::string &region, const std::function<PointValue> &modulus,
+                 const std::function<PointValue> &strain, int degree, bool axisymmetric) {
+  return {region, strain_kernel(modulus, strain, degree, axisymmetric)};
 }
 
-Named<Material> lambda_alone(const Named<PointValue> &factor) {
-  return named_alone(factor, false);
+std::function<Material> lambda_alone(const std::function<PointValue> &factor) {
+  return [factor](const FullMu &mu, const Point &x) { return Lame{factor(mu, x), 0}; };
 }
 
-Named<Material> shear_alone(const Named<PointValue> &factor) {
-  return named_alone(factor, true);
+std::function<Material> shear_alone(const std::function<PointValue> &factor) {
+  return [factor](const FullMu &mu, const Point &x) { return Lame{0, factor(mu, x)}; };
 }
 
-Named<Coefficient> lame_lambda(const Named<Coefficient> &poisson, bool plane_stress) {
-  return lambda_maker.named(
-      [=](const FullMu &mu) { return lame_of(1, poisson(mu), plane_stress).lambda; },
-      {{"plane_stress", {double(plane_stress)}}}, {{"poisson", poisson.record}});
+std::function<Coefficient> lame_lambda(const std::function<Coefficient> &poisson,
+                                       bool plane_stress) {
+  return [=](const FullMu &mu) { return lame_of(1, poisson(mu), plane_stress).lambda; };
 }
 
-Named<Coefficient> lame_shear(const Named<Coefficient> &poisson) {
-  return shear_maker.named([=](const FullMu &mu) { return lame_of(1, poisson(mu), false).shear; },
-                           {{"plane_stress", {0}}}, {{"poisson", poisson.record}});
-}
-
-FunctionLibrary elastic_functions() {
-  return {elasticity_maker, isotropic_maker, constants_maker, alone_maker,
-          lambda_maker,     shear_maker,     strain_maker};
+std::function<Coefficient> lame_shear(const std::function<Coefficient> &poisson) {
+  return [poisson](const FullMu &mu) { return lame_of(1, poisson(mu), false).shear; };
 }
 
 } // namespace rbvi

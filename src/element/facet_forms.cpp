@@ -69,54 +69,22 @@ std::function<Kernel> spring_kernel(double stiffness, int components, int degree
   };
 }
 
-const Maker<Traction> pressure_maker{
-    "pressure", 1, [](const Record &record) -> std::function<Traction> {
-      return [value = number(record, "value")](const FullMu &, const Point &,
-                                               const Point &n) -> Point {
-        return {-value * n[0], -value * n[1], -value * n[2]};
-      };
-    }};
-
-const Maker<Kernel> traction_maker{
-    "traction_load", 1, [](const Stored &of) {
-      return traction_kernel(made<Traction>(part(of, "traction")), integer(of, "components"),
-                             integer(of, "degree"), is_set(of, "axisymmetric"));
-    }};
-
-const Maker<Kernel> spring_maker{"spring", 1, [](const Record &record) {
-                                   return spring_kernel(number(record, "stiffness"),
-                                                        integer(record, "components"),
-                                                        integer(record, "degree"));
-                                 }};
-
 } // namespace
 
-FunctionLibrary facet_functions() {
-  return {pressure_maker, traction_maker, spring_maker};
-}
-
-Form traction_load(const std::string &boundary, const Named<Traction> &traction, int components,
-                   int degree, bool axisymmetric) {
-  Form form{
-      "",
-      traction_maker.named(traction_kernel(traction, components, degree, axisymmetric),
-                           {{"components", {double(components)}}, {"degree", {double(degree)}}},
-                           {{"traction", traction.record}}),
-      boundary};
-  if (axisymmetric) form.kernel.record.numbers["axisymmetric"] = {1};
-  return form;
+Form traction_load(const std::string &boundary, const std::function<Traction> &traction,
+                   int components, int degree, bool axisymmetric) {
+  return {"", traction_kernel(traction, components, degree, axisymmetric), boundary};
 }
 
 Form pressure_load(const std::string &boundary, double value, int components, int degree) {
-  return traction_load(boundary, pressure_maker({{"value", {value}}}), components, degree);
+  const auto pressure = [value](const FullMu &, const Point &, const Point &n) -> Point {
+    return {-value * n[0], -value * n[1], -value * n[2]};
+  };
+  return traction_load(boundary, pressure, components, degree);
 }
 
 Form spring(const std::string &boundary, double stiffness, int components, int degree) {
-  return {"",
-          spring_maker({{"stiffness", {stiffness}},
-                        {"components", {double(components)}},
-                        {"degree", {double(degree)}}}),
-          boundary};
+  return {"", spring_kernel(stiffness, components, degree), boundary};
 }
 
 } // namespace rbvi

@@ -166,7 +166,7 @@ Form work_of_load(const Scene &scene, const Term &f, Part part) {
 }
 
 /// -f(v) of a displacement v(mu, x).
-Form work_along(const Scene &scene, const Term &f, Named<PointMap> v) {
+Form work_along(const Scene &scene, const Term &f, std::function<PointMap> v) {
   const FormDofs dofs = dofs_of(scene, f.form);
   const auto work = work_at(f, dofs, [v, dofs](const FullMu &mu, const Cell &cell) {
     const std::vector<Point> nodes = node_points(dofs.dim, dofs.degree, cell);
@@ -268,12 +268,6 @@ Scene with_imposed_loads(Scene scene) {
 
 namespace {
 
-/// Whether a motion is the same at all points: a function that everywhere() makes.
-bool is_translation(const Named<PointMap> &motion) {
-  return motion.record.name == everywhere(Point{}).record.name ||
-         motion.record.name == everywhere(std::vector{constant(0)}).record.name;
-}
-
 /// Component c of a translation.
 Factor component_of(const Scene &scene, std::size_t c) {
   Factor factor{"component " + std::to_string(c) + " of the motion",
@@ -286,7 +280,7 @@ Factor component_of(const Scene &scene, std::size_t c) {
 
 /// Of -f(motion), one term of f.
 void add_work_of_motion(const Scene &scene, const Term &f, Sum &energy) {
-  if (!f.theta || !is_translation(scene.motion)) {
+  if (!f.theta || !is_everywhere(scene.motion)) {
     if (!f.form.means.empty())
       throw bad_input("a force on a whole boundary, beside a motion that depends on the place: "
                       "impose displacements instead, and leave out 'motion:'");

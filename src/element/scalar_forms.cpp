@@ -59,29 +59,6 @@ void fill(double *values, double scale, const CellMatrix &matrix) {
     values[i] = scale * matrix.data()[i];
 }
 
-const Maker<Kernel> laplace_maker{
-    "laplace", 1, [](const Record &record) -> std::function<Kernel> {
-      const int degree = integer(record, "degree");
-      check_degree(degree);
-      return [degree, rules = of_both([&](int dim) { return gradient_rule(dim, degree); })](
-                 const FullMu &, const Cell &cell, double *values) {
-        const Simplex s = simplex(cell.dim, cell.mapped);
-        fill(values, s.volume, stiffness(cell.dim, degree, of(rules, cell), s));
-      };
-    }};
-
-const Maker<Kernel> constant_load_maker{
-    "constant_load", 1, [](const Record &record) -> std::function<Kernel> {
-      const int degree = integer(record, "degree");
-      check_degree(degree);
-      return [value = number(record, "value"),
-              shares = of_both([&](int dim) -> CellMatrix {
-                return products(dim, 1, degree).colwise().sum(); // the hats sum to 1
-              })](const FullMu &, const Cell &cell, double *values) {
-        fill(values, value * volume_of(cell.dim, cell.mapped), of(shares, cell));
-      };
-    }};
-
 /// A quadrature point of a cell with the values of its Lagrange functions.
 struct LoadPoint {
   QuadraturePoint at;
@@ -121,30 +98,20 @@ std::function<Kernel> body_kernel(const std::function<PointMap> &force, int comp
   };
 }
 
-const Maker<Kernel> body_load_maker{
-    "body_load", 1, [](const Stored &of) {
-      return body_kernel(made<PointMap>(part(of, "force")), integer(of, "components"),
-                         integer(of, "degree"), is_set(of, "axisymmetric"));
-    }};
-
 } // namespace
 
-FunctionLibrary scalar_functions() {
-  return {laplace_maker, constant_load_maker, body_load_maker};
-}
-
-Form body_load(const std::string &region, const Named<PointMap> &force, int components, int degree,
-               bool axisymmetric) {
-  Form form{region, body_load_maker.named(
-                        body_kernel(force, components, degree, axisymmetric),
-                        {{"components", {double(components)}}, {"degree", {double(degree)}}},
-                        {{"force", force.record}})};
-  if (axisymmetric) form.kernel.record.numbers["axisymmetric"] = {1};
-  return form;
+Form body_load(const std::string &region, const std::function<PointMap> &force, int components,
+               int degree, bool axisymmetric) {
+  return {region, body_kernel(force, components, degree, axisymmetric)};
 }
 
 Form laplace(const std::string &region, int degree) {
-  return {region, laplace_maker({{"degree", {double(degree)}}})};
+  check_degree(degree);
+  return {region, [degree, rules = of_both([&](int dim) { return gradient_rule(dim, degree); })](
+                      const FullMu &, const Cell &cell, double *values) {
+            const Simplex s = simplex(cell.dim, cell.mapped);
+            fill(values, s.volume, stiffness(cell.dim, degree, of(rules, cell), s));
+          }};
 }
 
 Form h1_product(double length, int components, int degree) {
@@ -166,7 +133,13 @@ Form h1_product(double length, int components, int degree) {
 }
 
 Form constant_load(const std::string &region, double value, int degree) {
-  return {region, constant_load_maker({{"degree", {double(degree)}}, {"value", {value}}})};
+  check_degree(degree);
+  const auto shares = of_both([&](int dim) -> CellMatrix {
+    return products(dim, 1, degree).colwise().sum(); // the hats sum to 1
+  });
+  return {region, [=](const FullMu &, const Cell &cell, double *values) {
+            fill(values, value * volume_of(cell.dim, cell.mapped), of(shares, cell));
+          }};
 }
 
 Form l2_product(const std::string &region) {

@@ -72,8 +72,7 @@ void check_model(const ReducedModel &model) {
   const int dim = model.contact.interfaces.front().mesh.dim;
   require(dim == 2 || dim == 3, "interfaces have neither 2 nor 3 dimensions");
   const FieldChecker checker;
-  StoredBeside none;
-  list_model(checker, model, none);
+  list_model(checker, model, model.fields.key);
   if (model.fields.points.rows() > 0 || model.fields.basis.rows() > 0)
     list_fields(checker, "fields/", model);
 }
@@ -152,8 +151,7 @@ Contact contact_of(const ReducedModel &model, const Scene &scene) {
   return make_contact(scene, std::move(meshes));
 }
 
-Scene scene_by_code(const Scene &stored, const Registry &registry) {
-  Scene scene = make_scene(entry_of(registry, stored.name), stored.options);
+Scene in_box_of(const Scene &stored, Scene scene) {
   const auto same = [](const Parameter &p, const Parameter &q) { return p.name == q.name; };
   if (!std::ranges::equal(scene.parameters.all, stored.parameters.all, same))
     throw bad_input("the parameters of the model are not those of scene " + stored.name +
@@ -161,6 +159,7 @@ Scene scene_by_code(const Scene &stored, const Registry &registry) {
   const ParameterSpace of_scene = std::exchange(scene.parameters, stored.parameters);
   for (std::size_t i = 0; i < of_scene.all.size(); ++i)
     scene.parameters.all[i].valid = of_scene.all[i].valid;
+  scene.name = stored.name;
   check_box(scene);
   return scene;
 }

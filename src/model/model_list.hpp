@@ -14,12 +14,6 @@
 
 namespace rbvi {
 
-/// What the file holds in place of members.
-struct StoredBeside {
-  std::map<std::string, std::string> functions; ///< of the scene
-  std::string fields_key;
-};
-
 template <class Store, class Space> void list_parameters(const Store &store, Space &space) {
   const auto column = [&](const std::string &name, auto &&member) {
     list_column(store, "parameters/" + name, space.all, member);
@@ -34,10 +28,6 @@ template <class Store, class Space> void list_parameters(const Store &store, Spa
       "upper", [](auto &p) -> auto & { return p.upper; });
   column(
       "value", [](auto &p) -> auto & { return p.value; });
-  column(
-      "valid_lower", [](auto &p) -> auto & { return p.valid.lower; });
-  column(
-      "valid_upper", [](auto &p) -> auto & { return p.valid.upper; });
   store("parameters/free", space.free, Indices{std::ssize(space.all)});
 }
 
@@ -364,15 +354,16 @@ template <class Store, class Model> void list_history(const Store &store, Model 
   list_self_check(store, model.made.self_check);
 }
 
-template <class Store, class Model>
-void list_model(const Store &store, Model &model, StoredBeside &beside) {
+/// `fields_key`: of the file of the fields.
+template <class Store, class Model, class Key>
+void list_model(const Store &store, Model &model, Key &&fields_key) {
   const int dim = model.contact.interfaces.empty() ? 2 : model.contact.interfaces.front().mesh.dim;
   const auto texts = [&](const std::string &group, auto &map) {
     list_map(store, group + "/names", group + "/values", map);
   };
   store("scene/name", model.scene.name);
   texts("scene/options", model.scene.options);
-  texts("scene/functions", beside.functions);
+  store("scene/tree", model.scene.tree);
   list_parameters(store, model.scene.parameters);
   texts("settings", model.made.settings);
   store("mesh/fingerprint", model.made.mesh_fingerprint);
@@ -385,7 +376,7 @@ void list_model(const Store &store, Model &model, StoredBeside &beside) {
     return model.body.modes > 0 && model.body.supremizers >= 0 &&
            (model.contact.generators > 0 || !model.has_multipliers());
   });
-  store("fields/key", beside.fields_key);
+  store("fields/key", fields_key);
   list_nitsche(store, model);
   list_operators(store, model, dim);
   list_contact(store, model, dim);

@@ -2,8 +2,6 @@
 
 #include "rbvi/core/text.hpp"
 #include "rbvi/model/law_solver.hpp"
-#include "rbvi/model/scene_record.hpp"
-#include "rbvi/model/scene_text.hpp"
 #include "rbvi/model/self_check.hpp"
 #include "rbvi/model/training_samples.hpp"
 
@@ -120,9 +118,7 @@ void print_expected_errors(std::ostream &out, const ReducedModel &model) {
 }
 
 void print_model(std::ostream &out, const ReducedModel &model) {
-  const std::string unnamed = first_unnamed(record_of(model.scene));
-  label(out, "scene") << model.scene.name
-                      << (unnamed.empty() ? "" : ", whose code it needs: for " + unnamed) << '\n';
+  label(out, "scene") << model.scene.name << '\n';
   label(out, "options") << names_and_values(model.scene.options) << '\n';
   print_parameters(out, model.scene.parameters);
   print_failed(out, model);
@@ -155,7 +151,7 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   label(out, "multipliers") << model.contact.dual_basis.rows() << '\n';
   label(out, "mesh") << model.made.mesh_fingerprint << '\n';
   for (const auto &[name, value] : model.made.settings)
-    if (name != whole_scene) label(out, name) << value << '\n';
+    label(out, name) << value << '\n';
   print_expected_errors(out, model);
   label(out, "self-check");
   print_self_check(out, model.made.self_check, model.scene.parameters);

@@ -4,7 +4,6 @@
 #include "cone_tools.hpp"
 #include "eim_terms.hpp"
 #include "rbvi/model/packed.hpp"
-#include "rbvi/model/scene_text.hpp"
 #include "rbvi/model/training_samples.hpp"
 #include "rbvi/mor/fields.hpp"
 #include "rbvi/mor/nodal_dual_basis.hpp"
@@ -155,7 +154,6 @@ ReducedModel start_model(const Problem &problem, const ReducedBases &bases) {
   const Scene &scene = problem.scene();
   ReducedModel model;
   model.scene = scene;
-  model.made.settings[whole_scene] = scene_text(scene, problem.contact());
   model.body.modes = bases.modes;
   model.body.supremizers = bases.supremizers + bases.responses;
   model.body.online_enriched = bases.online_enriched;

@@ -264,6 +264,8 @@ Scene scene_of(const CaseNode &root, Defects &defects) {
   read_free(again, scene, defects);
   read_tests(again, scene, defects);
   defects.throw_all();
+  scene.units = reader.units;
+  scene.tree = text_of(root);
   scene.training = section(again, "train").value;
   scene.validation = section(again, "validate").value;
   return scene;
@@ -279,23 +281,19 @@ std::string name_of(const CaseNode &root, const std::string &file) {
 
 } // namespace
 
-bool is_scene_file(const std::string &text, const std::string &file) {
-  const CaseNode root = parse_document(text, file);
-  return std::ranges::any_of(std::vector{"rbvi", "physics", "contact", "parameters"},
-                             [&](const char *name) {
-                               const CaseNode *found = root.find(name);
-                               return found != nullptr && (found->is_table() || *name != 'p');
-                             });
+Scene read_scene(const CaseNode &resolved) {
+  Defects defects("the stored case");
+  return scene_of(resolved, defects);
 }
 
-SceneEntry read_case(const std::string &text, const std::string &file, const CaseChanges &changes) {
-  CaseNode root = parse_document(text, file);
+SceneEntry read_case(CaseNode root, const std::string &file, const CaseChanges &changes) {
   Defects defects(file);
   settle_units(root);
   if (!changes.variant.empty()) apply_variant(root, changes.variant, defects);
   apply_values(root, changes, defects);
   settle_units(root);
   SceneEntry scene_entry{name_of(root, file)};
+  scene_entry.version = 0;
   if (const CaseNode *says = root.find("says")) scene_entry.summary = says->value;
   const Reader reader{.root = root, .units = units_of(root, defects)};
   scene_entry.units = reader.units;
@@ -340,6 +338,9 @@ SceneEntry read_case(const std::string &text, const std::string &file, const Cas
     CaseNode chosen = with_choices(root, options, own);
     apply_values(chosen, changes, own); // above those of alternatives
     settle_units(chosen);
+    std::erase_if(chosen.entries, [](const CaseNode::Entry &section) {
+      return section.name == "choices" || section.name == "variants" || section.name == "options";
+    });
     own.throw_all();
     return scene_of(chosen, own);
   };

@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/scene/case.hpp"
 
 #include <yaml-cpp/yaml.h>
 
@@ -184,11 +185,6 @@ CaseNode node_of(const YAML::Node &yaml, const std::string &file) {
 
 } // namespace
 
-const CaseNode *CaseNode::find(const std::string &name) const {
-  const auto found = std::ranges::find(entries, name, &CaseNode::Entry::name);
-  return found == entries.end() ? nullptr : &found->node;
-}
-
 CaseNode parse_document(const std::string &text, const std::string &file) {
   const bool marked = text.starts_with(byte_order_mark);
   const std::string plain = marked ? text.substr(3) : text;
@@ -202,58 +198,17 @@ CaseNode parse_document(const std::string &text, const std::string &file) {
   return node_of(root, file);
 }
 
-bool replace(CaseNode &root, const std::string &path, const CaseNode &value) {
-  const bool takes_away = value.is_value() && value.value.empty();
-  CaseNode *at = &root;
-  std::size_t begin = 0;
-  for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', begin)) {
-    const std::string name = path.substr(begin, dot - begin);
-    begin = dot + 1;
-    const auto found = std::ranges::find(at->entries, name, &CaseNode::Entry::name);
-    if (found != at->entries.end()) {
-      at = &found->node;
-    } else if (takes_away) {
-      return true;
-    } else {
-      CaseNode table{CaseNode::Kind::table, "", {}, {}, value.line, value.column};
-      at = &at->entries.emplace_back(CaseNode::Entry{name, std::move(table)}).node;
-    }
-    if (!at->is_table() && !(at->is_value() && at->value.empty())) return false;
-    at->kind = CaseNode::Kind::table;
-  }
-  const std::string name = path.substr(begin);
-  const auto found = std::ranges::find(at->entries, name, &CaseNode::Entry::name);
-  if (found == at->entries.end()) {
-    if (!takes_away) at->entries.push_back({name, value});
-  } else if (takes_away) {
-    at->entries.erase(found);
-  } else {
-    found->node = value;
-  }
-  return true;
+bool is_scene_file(const std::string &text, const std::string &file) {
+  const CaseNode root = parse_document(text, file);
+  return std::ranges::any_of(std::vector{"rbvi", "physics", "contact", "parameters"},
+                             [&](const char *name) {
+                               const CaseNode *found = root.find(name);
+                               return found != nullptr && (found->is_table() || *name != 'p');
+                             });
 }
 
-void Defects::add(const CaseNode &at, const std::string &what) {
-  const bool told = std::ranges::any_of(all_, [&](const Defect &other) {
-    return other.line == at.line && other.column == at.column && at.line != 0;
-  });
-  if (!told) all_.push_back({at.line, at.column, what});
-}
-
-void Defects::throw_all() const {
-  if (all_.empty()) return;
-  std::vector<Defect> sorted = all_;
-  std::ranges::stable_sort(sorted, [](const Defect &a, const Defect &b) {
-    return std::pair(a.line, a.column) < std::pair(b.line, b.column);
-  });
-  std::string text;
-  for (const Defect &defect : sorted)
-    text += (text.empty() ? "" : "\n") + file_ + ":" +
-            (defect.line == 0
-                 ? "" // of what is not there
-                 : std::to_string(defect.line) + ":" + std::to_string(defect.column) + ":") +
-            " " + defect.what;
-  throw bad_input(text);
+SceneEntry read_case(const std::string &text, const std::string &file, const CaseChanges &changes) {
+  return read_case(parse_document(text, file), file, changes);
 }
 
 } // namespace rbvi

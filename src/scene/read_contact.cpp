@@ -50,15 +50,15 @@ bool is_large(const CaseNode &node) {
 /// What is known of a boundary: the mapped points of its circles, and their normals.
 struct Side {
   std::string boundary;
-  Named<PointMap> at{};     ///< empty without circles
-  Named<PointMap> normal{}; ///< of the body; likewise
+  std::function<PointMap> at{};     ///< empty without circles
+  std::function<PointMap> normal{}; ///< of the body; likewise
 };
 
 Side side_of(const Reader &reader, const std::string &boundary, const Scene &scene) {
   Side side{boundary};
   const auto found = reader.circles.find(boundary);
   if (found == reader.circles.end()) return side;
-  const Named<PointMap> curve = on_circles(found->second);
+  const std::function<PointMap> curve = on_circles(found->second);
   side.at = map_of(reader).empty() ? curve : composed(scene.map, curve);
   if (keeps_directions(reader, scene)) side.normal = normals_of_circles(found->second);
   return side;
@@ -69,15 +69,15 @@ std::string normal_choice(const CaseNode &node) {
 }
 
 /// Where the body is at rest, as `gap_from` says.
-Named<PointMap> measured_from(const CaseNode &node, const Side &side, const Scene &scene) {
+std::function<PointMap> measured_from(const CaseNode &node, const Side &side, const Scene &scene) {
   const bool edges =
       choice_or(node, "gap_from", "curve", {"curve", "edges"}) == "edges" || !side.at;
   return edges ? scene.map : side.at;
 }
 
 /// Where the body now is.
-RigidContact following(const CaseNode &node, const Side &side, const Named<Surface> &surface,
-                       const Friction &friction) {
+RigidContact following(const CaseNode &node, const Side &side,
+                       const std::function<Surface> &surface, const Friction &friction) {
   if (choice_or(node, "gap", "closest", {"closest", "ray", "vertical"}) != "closest")
     throw bad_input("kinematics: large measures the gap to the next point: leave out gap");
   const std::string normal = normal_choice(node);
@@ -99,7 +99,7 @@ RigidContact following(const CaseNode &node, const Side &side, const Named<Surfa
 }
 
 /// The published law takes the normal of a round body on a disk; any other that of what is rigid.
-RigidContact at_rest(const CaseNode &node, const Side &side, const Named<Surface> &surface,
+RigidContact at_rest(const CaseNode &node, const Side &side, const std::function<Surface> &surface,
                      const Friction &friction, const Scene &scene) {
   const std::string choice = normal_choice(node);
   if (choice == "deformed")
@@ -108,9 +108,10 @@ RigidContact at_rest(const CaseNode &node, const Side &side, const Named<Surface
     throw bad_input("normal: body needs a boundary on a circle ('curves:') and a map that does "
                     "not turn or stretch it");
   const bool published = choice == "auto" && entry(node, "against").find("disk") != nullptr;
-  const Named<PointMap> normal = side.normal && (choice == "body" || published)
-                                     ? side.normal
-                                     : normal_of_surface(surface, side.at ? side.at : scene.map);
+  const std::function<PointMap> normal =
+      side.normal && (choice == "body" || published)
+          ? side.normal
+          : normal_of_surface(surface, side.at ? side.at : scene.map);
   const std::string gap = choice_or(node, "gap", "closest", {"closest", "ray", "vertical"});
   const GapKind kind = gap == "ray"        ? GapKind::ray
                        : gap == "vertical" ? GapKind::vertical
@@ -122,8 +123,9 @@ RigidContact at_rest(const CaseNode &node, const Side &side, const Named<Surface
   return rigid_contact(support);
 }
 
-RigidContact surface_contact(Reader &reader, const CaseNode &node, const Named<Surface> &surface,
-                             const Side &side, Scene &scene) {
+RigidContact surface_contact(Reader &reader, const CaseNode &node,
+                             const std::function<Surface> &surface, const Side &side,
+                             Scene &scene) {
   check_used(node, "with a disk or a level set",
              {"at", "against", "normal", "gap", "gap_from", "friction", "kinematics", "formulation",
               "nitsche_gamma0", "lumped"});
@@ -132,7 +134,7 @@ RigidContact surface_contact(Reader &reader, const CaseNode &node, const Named<S
                         : at_rest(node, side, surface, friction, scene);
 }
 
-Named<Surface> disk_in(Reader &reader, const CaseNode &disk) {
+std::function<Surface> disk_in(Reader &reader, const CaseNode &disk) {
   const std::vector<Expression> centre = components_in(reader, entry(disk, "center"));
   if (centre.size() != 2) throw bad_input("the center of a disk is [x, y]");
   const Formula radius = formula_in(reader, entry(disk, "radius"));

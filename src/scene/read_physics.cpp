@@ -48,14 +48,14 @@ struct Constants {
   bool plane_stress = false;
   Expression first, second;
 
-  Named<Material> material(Reader &reader) const;
+  std::function<Material> material(Reader &reader) const;
   /// Of a strain that has no stress: swelling_modulus().
   Expression swelling() const;
 };
 
-Named<Material> Constants::material(Reader &reader) const {
-  const Named<PointValue> one = point_value_of(formula_of(reader, {first})),
-                          other = point_value_of(formula_of(reader, {second}));
+std::function<Material> Constants::material(Reader &reader) const {
+  const std::function<PointValue> one = point_value_of(formula_of(reader, {first})),
+                                  other = point_value_of(formula_of(reader, {second}));
   return young ? isotropic(one, other, plane_stress) : of_lame(one, other, plane_stress);
 }
 
@@ -112,7 +112,8 @@ std::array<Modulus, 2> moduli_of(Reader &reader, const Constants &constants) {
           Modulus{second, {}, true}};
 }
 
-Form stiffness(const std::string &region, const Named<Material> &material, const Scene &scene) {
+Form stiffness(const std::string &region, const std::function<Material> &material,
+               const Scene &scene) {
   return scene.axisymmetric ? axisymmetric_elasticity(region, material, scene.degree)
                             : elasticity(region, material, scene.degree);
 }
@@ -145,7 +146,7 @@ Sum exact_stiffness(Reader &reader, const Constants &constants,
     for (std::size_t k = 0; k < std::max(products[0].size(), products[1].size()); ++k)
       for (std::size_t m = 0; m < 2; ++m) {
         if (k >= products[m].size()) continue;
-        const Named<PointValue> at_point =
+        const std::function<PointValue> at_point =
             point_value_of(formula_of(reader, {products[m][k].at_point}));
         std::vector<Factor> factors = products[m][k].factors;
         if (moduli[m].of_ratio) factors.push_back(*moduli[m].of_ratio);

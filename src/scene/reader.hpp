@@ -1,7 +1,7 @@
 // What the sections of a case file are read with.
 #pragma once
 
-#include "rbvi/scene/document.hpp"
+#include "rbvi/scene/tree.hpp"
 #include "shapes.hpp"
 
 #include "rbvi/core/formula.hpp"

@@ -3,8 +3,8 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/fields.hpp"
-#include "rbvi/model/scene_text.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/scene/stored_scene.hpp"
 
 #include <cmath>
 #include <limits>
@@ -15,7 +15,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr int sample_schema = 10;
+constexpr int sample_schema = 11;
 
 void check_settings(const std::filesystem::path &path, const Settings &mine,
                     const Settings &theirs) {
@@ -29,8 +29,8 @@ void check_settings(const std::filesystem::path &path, const Settings &mine,
                       ": use another -out or restore the option");
   }
   const auto found = theirs.find(whole_scene);
-  const std::string difference = scene_difference(found == theirs.end() ? "" : found->second,
-                                                  mine.at(whole_scene), Further::refused);
+  const std::string difference =
+      scene_difference(found == theirs.end() ? "" : found->second, mine.at(whole_scene));
   if (!difference.empty())
     throw bad_input("the samples in " + path.parent_path().string() + " are of another scene: " +
                     difference + ": rbvi offline makes them anew in another -out");

@@ -4,7 +4,6 @@
 #include "rbvi/io/checksum.hpp"
 #include "rbvi/io/h5.hpp"
 #include "rbvi/io/write_atomically.hpp"
-#include "rbvi/model/scene_text.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/interrupt.hpp"
 #include "rbvi/par/progress.hpp"
@@ -328,7 +327,7 @@ Settings sample_settings(const Problem &problem, const HfOptions &options) {
       settings["fixed " + parameter.name] = number(parameter.value);
   }
   settings["parameters"] = names_of(scene.parameters);
-  settings[whole_scene] = scene_text(scene, problem.contact());
+  settings[whole_scene] = scene.tree;
   if (!has_multipliers(scene)) {
     settings["nitsche_bounds"] = options.nitsche.nonpenetration ? "nonpenetration" : "none";
     return settings;

@@ -63,7 +63,7 @@ std::string case_of_options(const std::vector<CaseSetting> &options, const std::
 }
 
 bool is_own(const std::string &scene, const Registry &registry) {
-  return std::ranges::find(registry.scenes, scene, &SceneEntry::name) != registry.scenes.end();
+  return std::ranges::find(registry, scene, &SceneEntry::name) != registry.end();
 }
 
 /// A scene that the program has by itself.
@@ -133,8 +133,8 @@ GivenCase insert_case(MPI_Comm comm, const std::vector<std::string> &command_lin
   given.scene = entry.name;
   given.text = named_text(text, entry.name);
   auto known = std::make_shared<Registry>(registry);
-  std::erase_if(known->scenes, [&](const SceneEntry &other) { return other.name == entry.name; });
-  known->scenes.push_back(std::move(entry));
+  std::erase_if((*known), [&](const SceneEntry &other) { return other.name == entry.name; });
+  (*known).push_back(std::move(entry));
   given.registry = std::move(known);
   return given;
 }

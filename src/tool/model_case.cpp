@@ -4,9 +4,9 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/io/parameter_sets.hpp"
-#include "rbvi/model/scene_text.hpp"
 #include "rbvi/model/training_samples.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/scene/stored_scene.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -116,7 +116,8 @@ MeasureOptions adopt_model(MeasureOptions options, const ReducedModel &model) {
   Scene stored = model.scene;
   stored.name = options.scene.name; // that of a folder, which may be renamed
   try {
-    options.scene = scene_by_code(stored, *options.registry);
+    options.scene =
+        in_box_of(stored, make_scene(entry_of(*options.registry, stored.name), stored.options));
   } catch (const Error &error) {
     throw bad_input("the model in " + options.out.string() + " is one of scene " +
                     model.scene.name + ", the case names " + stored.name +
@@ -152,12 +153,10 @@ void check_problem(const Problem &problem, const ReducedModel &model, const fs::
   if (problem.mesh().fingerprint != model.made.mesh_fingerprint)
     throw bad_input(its + " was made on another mesh" +
                     (file.empty() ? "" : ", that of " + file + " then: give it by -mesh"));
-  const std::string again = ": make it again by rbvi offline with another -out";
-  const std::string of_model = setting(model, whole_scene);
-  if (of_model.empty()) throw bad_input(its + " does not say of which scene it is" + again);
-  const std::string difference =
-      scene_difference(of_model, scene_text(problem.scene(), problem.contact()), Further::refused);
-  if (!difference.empty()) throw bad_input(its + " is of another scene: " + difference + again);
+  const std::string difference = scene_difference(model.scene.tree, problem.scene().tree);
+  if (!difference.empty())
+    throw bad_input(its + " is of another scene: " + difference +
+                    ": make it again by rbvi offline with another -out");
 }
 
 } // namespace rbvi

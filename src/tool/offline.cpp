@@ -6,13 +6,12 @@
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/mesh/contact_curves.hpp"
 #include "rbvi/model/print.hpp"
-#include "rbvi/model/scene_record.hpp"
-#include "rbvi/model/scene_text.hpp"
 #include "rbvi/model/self_check.hpp"
 #include "rbvi/model/training_samples.hpp"
 #include "rbvi/mor/fields.hpp"
 #include "rbvi/mor/reduced_balance.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/scene/stored_scene.hpp"
 #include "rbvi/solve/contact_cost.hpp"
 #include "rbvi/sweep/grouping.hpp"
 #include "rbvi/tool/commands.hpp"
@@ -58,13 +57,6 @@ void name_training(const Sweep &sweep, ReducedModel &model) {
   model.made.failed_mu = as_columns(failed, model.scene.parameters.size());
 }
 
-/// Of the outputs alone.
-std::map<std::string, std::string> lines_of_outputs(const Scene &scene) {
-  Record record = record_of(scene);
-  std::erase_if(record.parts, [](const auto &part) { return !part.first.starts_with("output_"); });
-  return lines_of(record);
-}
-
 bool same_box(const ParameterSpace &one, const ParameterSpace &two) {
   return one.free == two.free &&
          std::ranges::equal(one.all, two.all, [](const Parameter &p, const Parameter &q) {
@@ -77,13 +69,13 @@ bool same_box(const ParameterSpace &one, const ParameterSpace &two) {
 bool is_made_of(const ReducedModel &model, const OfflineOptions &options, const Problem &problem,
                 const Sweep &sweep) {
   std::map<std::string, std::string> settings = kept_settings(options), own = model.made.settings;
-  settings[whole_scene] = scene_text(problem.scene(), problem.contact());
   settings["samples"] = std::to_string(sweep.samples.size());
   for (auto *of : {&settings, &own})
     of->erase("cone_ring"); // what it was widened to
   const std::vector<Mu> mus = parameters_of(sweep.samples);
   const bool reaches = model.contact.trace_dofs.empty() || problem.scene().outputs.empty();
-  return settings == own && from_columns(model.made.trained_mu) == mus && reaches &&
+  return settings == own && scene_difference(model.scene.tree, problem.scene().tree).empty() &&
+         from_columns(model.made.trained_mu) == mus && reaches &&
          same_box(model.scene.parameters, problem.scene().parameters) &&
          model.made.mesh_fingerprint == problem.mesh().fingerprint;
 }
@@ -106,7 +98,7 @@ std::optional<ReducedModel> read_kept(const OfflineOptions &options, const Probl
     ReducedModel model = read_model(path, *options.registry, false);
     const Scene &scene = problem.scene();
     if (!is_made_of(model, options, problem, sweep) ||
-        lines_of_outputs(model.scene) == lines_of_outputs(scene))
+        scene_difference(model.scene.tree, scene.tree, Compared::answers_and_outputs).empty())
       return std::nullopt;
     model.outputs = {problem.output_cells(), {}};
     if (const std::vector<int> &nodes = model.outputs.cells.nodes; !nodes.empty()) {
@@ -141,7 +133,7 @@ std::optional<ReducedModel> with_other_outputs(MPI_Comm world, const OfflineOpti
 ReducedModel finished_model(Reduction &made, const OfflineOptions &options, const Sweep &sweep,
                             const StageTable &before) {
   ReducedModel model = std::move(made.model);
-  model.made.settings.merge(kept_settings(options)); // beside the whole scene
+  model.made.settings.merge(kept_settings(options));
   model.made.settings["samples"] = std::to_string(sweep.samples.size());
   if (model.made.settings.contains("cone_ring"))
     model.made.settings["cone_ring"] = std::to_string(made.ring);

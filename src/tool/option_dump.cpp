@@ -96,7 +96,7 @@ std::string of_online(const OnlineOption &option) {
 } // namespace
 
 std::string options_dump(const Registry &registry) {
-  std::vector<SceneEntry> scenes = registry.scenes;
+  std::vector<SceneEntry> scenes = registry;
   for (SceneEntry &entry : cases_in("cases"))
     scenes.push_back(std::move(entry));
   return object({{"options", list(tool_options(), of_option)},

@@ -104,7 +104,7 @@ void print_mesh_contract(const SceneEntry &entry) {
 }
 
 void print_help(const Registry &registry, const std::string &scene, const std::string &command) {
-  for (const SceneEntry &own : registry.scenes)
+  for (const SceneEntry &own : registry)
     if (own.name == scene) return print_scene(own);
   if (!scene.empty()) return print_scene(scene_of_file(MPI_COMM_SELF, scene));
   for (const Command &known : commands())
@@ -118,7 +118,7 @@ void print_help(const Registry &registry, const std::string &scene, const std::s
       "  -help -json           options, keys of case files and scenes, for programs; explained\n"
       "                        by the page cases/OPTIONS.md\n\n");
   print_options();
-  for (const SceneEntry &entry : registry.scenes)
+  for (const SceneEntry &entry : registry)
     print_scene(entry);
   std::printf("\nOutputs (columns of tables):\n");
   for (const OutputColumn &column : output_columns())

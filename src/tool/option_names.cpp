@@ -98,7 +98,7 @@ std::string chosen(const Scene &scene, const SceneEntry &entry) {
 
 std::string what_needs(const std::string &name, const Scene &scene, const Registry &registry) {
   std::string others;
-  for (const SceneEntry &entry : registry.scenes) {
+  for (const SceneEntry &entry : registry) {
     bool found = std::ranges::find(entry.options, name, &SceneOption::name) != entry.options.end();
     for (const auto &[parameter, choice] : parameters_of(entry)) {
       if (parameter.name != name) continue;

@@ -107,7 +107,7 @@ void write_solution(Problem &problem, const std::string &vtu, const Mu &mu,
 }
 
 void command_list(const std::string &folder, const Registry &registry) {
-  std::vector<SceneEntry> scenes = registry.scenes, cases = cases_in(folder);
+  std::vector<SceneEntry> scenes = registry, cases = cases_in(folder);
   if (scenes.empty() && cases.empty())
     throw bad_input("there is no case " + folder + "/*/case.yaml: use rbvi list FOLDER");
   scenes.insert(scenes.end(), cases.begin(), cases.end());

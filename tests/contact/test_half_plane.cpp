@@ -1,7 +1,6 @@
 // Contact with a rigid half-plane that moves and tilts: operators in closed form, the condition at
 // single nodes, friction, what files store, and planes that cannot be.
 #include "../core/refuses.hpp"
-#include "rbvi/contact/registry.hpp"
 #include "rbvi/contact/support.hpp"
 #include "rbvi/core/validity.hpp"
 #include "support_scenes.hpp"
@@ -185,23 +184,6 @@ TEST(HalfPlane, TheBoundOfFrictionIsThatOfItsParameter) {
   EXPECT_EQ(made_on(tilted_plane(FrictionLaw::coulomb), scene, curve)->dual().components, 2);
 }
 
-TEST(HalfPlane, IsMadeAgainFromItsRecord) {
-  const InterfaceMesh curve = support_curve(arc(5, 0.5), 2);
-  const Scene scene = scene_of(2);
-  HalfPlane plane = tilted_plane(FrictionLaw::coulomb);
-  plane.lumped = true;
-  const ContactRecipe recipe = half_plane(plane),
-                      again = contact_in({half_plane(plane).record, &catalogue()});
-  EXPECT_EQ(again.entities.parts, recipe.entities.parts);
-  EXPECT_EQ(again.friction, recipe.friction);
-  EXPECT_EQ(again.coefficients.size(), recipe.coefficients.size());
-  ContactOperators one, other;
-  recipe.make(scene, curve)->assemble_all(mu, {}, one);
-  again.make(scene, curve)->assemble_all(mu, {}, other);
-  EXPECT_EQ(Matrix(one.b), Matrix(other.b));
-  EXPECT_EQ(one.g, other.g);
-}
-
 TEST(HalfPlane, RefusesANormalThatIsNotOne) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   HalfPlane plane = tilted_plane();
@@ -213,7 +195,7 @@ TEST(HalfPlane, RefusesANormalThatIsNotOne) {
 
 /// By the name of the function and of the boundary, wherever parameters are checked.
 TEST(HalfPlane, RefusesFunctionsThatAreNotFinite) {
-  const Named<Coefficient> broken = [](const FullMu &at) {
+  const std::function<Coefficient> broken = [](const FullMu &at) {
     return at[push] > 0.5 ? std::numeric_limits<double>::quiet_NaN() : 0.1;
   };
   const auto expect = [&](const HalfPlane &plane, const std::string &name) {

@@ -32,7 +32,7 @@ TEST(Validity, EveryParameterHasARangeThatHoldsItsBox) {
 }
 
 TEST(Validity, EveryNumericOptionHasARange) {
-  for (const SceneEntry &entry : catalogue().scenes)
+  for (const SceneEntry &entry : catalogue())
     for (const SceneOption &option : entry.options) {
       if (!option.choices.empty()) continue;
       SCOPED_TRACE(entry.name + " " + option.name);

@@ -71,9 +71,9 @@ def main(build, page, cmake):
         reduced = force(run(own / "query", model))
         if not abs(reduced - exact) <= 1e-3 * exact:  # nine training parameters
             sys.exit(f"normal_force is {exact}, by the model {reduced}")
-        # The functions of the scene have no names: no other program answers its model.
+        # Its scene is a program's: no other program answers its model.
         refusal = run(prefix / "bin/rbvi-online", model, status=2)
-        if "making the scene by its code" not in refusal:
+        if "unknown scene 'tilted_plane'" not in refusal:
             sys.exit(f"rbvi-online says: {refusal}")
     print(f"a program of {lines} lines has its own scene: normal_force {exact:.6g}, "
           f"by the model {reduced:.6g}")

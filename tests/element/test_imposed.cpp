@@ -108,8 +108,8 @@ TEST(ImposedForms, TheWorkOfAMotionIsOverWhatItsLoadIsOver) {
     Scene scene = body(mapped, {});
     for (Term &term : scene.f)
       term.form.without = {"sides"};
-    for (const Named<PointMap> &motion :
-         {everywhere(Point{1, 2, 0}), Named<PointMap>([](const FullMu &at, const Point &x) {
+    for (const std::function<PointMap> &motion :
+         {everywhere(Point{1, 2, 0}), std::function<PointMap>([](const FullMu &at, const Point &x) {
             return Point{at[0] * x[1], at[1], 0};
           })}) {
       scene.motion = motion;

@@ -126,7 +126,7 @@ TEST(BodyLoad, IsTheIntegralOfTheForceTimesTheTestFunction) {
     const auto nodes = static_cast<Index>(nodes_per_cell(e.dim, e.degree));
     const Vector constant = e.vector(constant_load("", 1, e.degree), e.degree);
     Vector values(2 * nodes);
-    const Named<PointMap> force = [](const FullMu &, const Point &at) {
+    const std::function<PointMap> force = [](const FullMu &, const Point &at) {
       return Point{-3, 2 + at[0], 0};
     };
     body_load("", force, 2, e.degree).kernel({}, e.cell, values.data());

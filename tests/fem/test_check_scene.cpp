@@ -49,7 +49,7 @@ SceneOptions with(const SceneEntry &entry, SceneOptions options) {
 
 TEST(CheckScene, EverySceneWithEachOfItsChoicesPasses) {
   if (ranks_of(PETSC_COMM_WORLD) > 1) GTEST_SKIP() << "on one rank, for the time that it takes";
-  for (const SceneEntry &entry : catalogue().scenes) {
+  for (const SceneEntry &entry : catalogue()) {
     EXPECT_NO_THROW(check(make_scene(entry.name, with(entry, {})))) << entry.name;
     for (const SceneOption &option : entry.options)
       for (const std::string &choice : option.choices) {
@@ -102,7 +102,7 @@ TEST(CheckScene, APartFarAwayMayFaceARigidBodyFromBehind) {
 TEST(CheckScene, TheNormalOfASurfaceIsTheGradientOfItsDistance) {
   const auto ground = [](double slope, double y) {
     return [=](Scene &s) {
-      const Named<Surface> surface = [=](const FullMu &, const Point &x) {
+      const std::function<Surface> surface = [=](const FullMu &, const Point &x) {
         return SurfacePoint{slope * x[1], {0, y, 0}, 0};
       };
       s.contacts = {rigid_surface({"contact", surface})};
@@ -121,13 +121,13 @@ TEST(CheckScene, ParametersAreDeclared) {
   EXPECT_TRUE(refused(membrane(), "term 1 of a depends on the parameter center_y", [](Scene &s) {
     s.a[0].parameters = std::vector{0, 1};
   }));
-  EXPECT_TRUE(refused(membrane(), "imposed on 'boundary' depends on the parameter frame_tilt",
-                      [](Scene &s) {
-                        const Named<PointMap> tilted = [](const FullMu &mu, const Point &x) {
-                          return Point{mu[4] * x[0], 0, 0};
-                        };
-                        s.fixed[0].values = {{tilted, std::nullopt, std::vector{3}}};
-                      }));
+  EXPECT_TRUE(refused(
+      membrane(), "imposed on 'boundary' depends on the parameter frame_tilt", [](Scene &s) {
+        const std::function<PointMap> tilted = [](const FullMu &mu, const Point &x) {
+          return Point{mu[4] * x[0], 0, 0};
+        };
+        s.fixed[0].values = {{tilted, std::nullopt, std::vector{3}}};
+      }));
   EXPECT_TRUE(refused(membrane(), "frame_tilt: take that into a factor", [](Scene &s) {
     s.fixed[0].values[0].value = [](const FullMu &mu, const Point &) { return Point{mu[4], 0, 0}; };
   }));
@@ -159,7 +159,8 @@ TEST(CheckScene, ExactTermsFollowTheMap) {
   EXPECT_FALSE(refused(disk(), "", pressure({{"radius", parameter(0), {0}}})));
   EXPECT_TRUE(
       refused(block(), "is exact, and its kernel depends on the parameter shear", [](Scene &s) {
-        const Named<Traction> traction = [](const FullMu &mu, const Point &, const Point &) {
+        const std::function<Traction> traction = [](const FullMu &mu, const Point &,
+                                                    const Point &) {
           return Point{mu[1], 0, 0};
         };
         s.f = {exact_term(traction_load("sides", traction, 2, 1))};
@@ -177,7 +178,7 @@ TEST(CheckScene, FormsHaveTheComponentsAndTheDegreeOfTheScene) {
                       [](Scene &s) { s.v_product = {exact_term(h1_product(1, 1, 1))}; }));
   const auto with_kernel = [](double upper, double lower) {
     return [=](Scene &s) {
-      const Named<Kernel> kernel = [=](const FullMu &, const Cell &, double *values) {
+      const std::function<Kernel> kernel = [=](const FullMu &, const Cell &, double *values) {
         for (int i = 0; i < 6; ++i)
           for (int j = 0; j < 6; ++j)
             values[6 * i + j] = i < j ? upper : lower;

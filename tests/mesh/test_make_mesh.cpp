@@ -45,7 +45,7 @@ TEST_P(MakeMesh, TotalsAndFingerprintDoNotDependOnRanks) {
 
 /// Without making it: of every scene, of either degree.
 TEST(CountNodes, IsThatOfTheMesh) {
-  for (const SceneEntry &entry : catalogue().scenes)
+  for (const SceneEntry &entry : catalogue())
     for (const int refine : {0, 1}) {
       Scene scene = make_scene(entry.name);
       for (scene.degree = 1; scene.degree <= 2; ++scene.degree)
@@ -104,7 +104,7 @@ std::vector<int> facets_per_cell(const Mesh &mesh, const std::string &boundary) 
 
 /// Of every scene and either degree: each facet is one rank's, with its nodes.
 TEST(MakeMeshFacets, AreThoseOfOneProcess) {
-  for (const SceneEntry &entry : catalogue().scenes) {
+  for (const SceneEntry &entry : catalogue()) {
     Scene scene = make_scene(entry.name);
     std::map<std::string, std::vector<int>> of_degree_one;
     for (scene.degree = 1; scene.degree <= 2; ++scene.degree) {

@@ -6,7 +6,6 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/h5.hpp"
 #include "rbvi/model/online.hpp"
-#include "rbvi/model/scene_text.hpp"
 #include "tests/catalogue.hpp"
 
 namespace rbvi::model_test {
@@ -36,17 +35,10 @@ void expect_same(const AffineTerms &a, const AffineTerms &b) {
   }
 }
 
-/// It needs the code of its scene: the map has no name in files.
-ReducedModel unnamed_model() {
-  ReducedModel model = full_model();
-  model.scene.map = [](const FullMu &, const Point &x) { return x; };
-  return model;
-}
-
 /// Ranges of validity are the scene's: no file changes them, and none may leave them.
 TEST_F(ModelFile, ABoxOutsideTheRangesOfItsSceneIsRefused) {
   const auto refusal = [&](double lower, double upper) -> std::string {
-    ReducedModel model = unnamed_model();
+    ReducedModel model = full_model();
     model.scene.parameters.all[0].lower = lower;
     model.scene.parameters.all[0].upper = upper;
     model.scene.parameters.all[0].valid = {};
@@ -64,20 +56,29 @@ TEST_F(ModelFile, ABoxOutsideTheRangesOfItsSceneIsRefused) {
     EXPECT_NE(refusal(lower, upper).find("range of validity is [0.02, 0.38]"), std::string::npos);
 }
 
-/// A model knows what the functions of its scene returned when it was made.
-TEST_F(ModelFile, AModelWhoseSceneHasChangedInThisBuildIsRefused) {
+/// A program's scene is known by its name and its version.
+TEST_F(ModelFile, AProgramsSceneIsMadeByItsEntry) {
+  const auto program = [](int version) {
+    SceneEntry entry{
+        "own", "", {}, [](const SceneOptions &) { return make_scene("membrane_obstacle"); }};
+    entry.version = version;
+    return Registry{entry};
+  };
   ReducedModel model = full_model();
-  const Scene scene = model.scene;
-  model.made.settings[whole_scene] = scene_text(scene, contact_of(model, scene));
+  const ParameterSpace parameters = model.scene.parameters;
+  model.scene = make_scene(program(3).front());
+  model.scene.parameters = parameters;
   write_model(model, path);
-  EXPECT_EQ(read_model(path, catalogue()).made.settings, model.made.settings);
-  const std::string line = "map values: ";
-  std::string &text = model.made.settings[whole_scene];
-  const std::size_t digit = text.find(line) + line.size() + 5;
-  text[digit] = text[digit] == '5' ? '6' : '5';
+  const ReducedModel read = read_model(path, program(3));
+  EXPECT_EQ(read.scene.tree, "program: own\nversion: 3\n");
+  EXPECT_EQ(OnlineSolver(read).solve({0.2, 0.01}).u, OnlineSolver(model).solve({0.2, 0.01}).u);
+  for (const std::string part : {"the program's scene own is another one: version is 4, it was 3",
+                                 "use the program that made it, while reading"})
+    EXPECT_TRUE(refuses(part, [&] { (void)read_model(path, program(4)); }));
+  EXPECT_TRUE(refuses("unknown scene 'own'", [&] { (void)read_model(path, catalogue()); }));
+  model.scene.tree.clear();
   write_model(model, path);
-  for (const std::string part : {"another one in this build: map values is ", "rbvi offline"})
-    EXPECT_TRUE(refuses(part, [&] { (void)read_model(path, catalogue()); }));
+  EXPECT_TRUE(refuses("a scene without a name", [&] { (void)read_model(path, catalogue()); }));
 }
 
 TEST_F(ModelFile, ReturnsTheModel) {
@@ -258,14 +259,13 @@ TEST_F(ModelFile, WhatThisBuildLacksIsBadInput) {
     }
     return false;
   };
-  ReducedModel model = unnamed_model();
+  ReducedModel model = full_model();
   EXPECT_FALSE(refused(model));
-  model.scene.name = "bridge";
+  model.scene.tree = "program: bridge\nversion: 1\n";
   EXPECT_TRUE(refused(model));
-  model = unnamed_model();
-  model.scene.options["colour"] = "red";
+  model.scene.tree = "rbvi: 1\nphysics: magnetism\n";
   EXPECT_TRUE(refused(model));
-  model = unnamed_model();
+  model = full_model();
   model.scene.parameters.all[0].name = "diameter";
   EXPECT_TRUE(refused(model));
 }

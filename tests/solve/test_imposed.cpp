@@ -20,7 +20,7 @@
 namespace rbvi::imposed_test {
 namespace {
 
-using Field = Named<PointMap>;
+using Field = std::function<PointMap>;
 
 struct Solved {
   Problem problem;

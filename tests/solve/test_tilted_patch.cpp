@@ -37,7 +37,7 @@ Point exact(const FullMu &mu, const Point &x) {
 
 /// The block [0, 1] x [0, 1/2] turned by an angle about a corner, on a plane that is turned as
 /// well; the exact displacement is imposed on all other sides.
-Scene turned_block(int degree, FrictionLaw law, const Named<Coefficient> &limit = {}) {
+Scene turned_block(int degree, FrictionLaw law, const std::function<Coefficient> &limit = {}) {
   Scene scene = make_scene("patch", {{"bodies", "one"}, {"friction", "none"}});
   scene.degree = degree;
   scene.parameters = all_free({{"angle", "", -3, 3, 0},

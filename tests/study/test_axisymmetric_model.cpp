@@ -3,7 +3,6 @@
 #include "../ring_mesh.hpp"
 #include "reduced.hpp"
 
-#include "rbvi/contact/registry.hpp"
 #include "rbvi/model/online.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/scene/case.hpp"
@@ -46,7 +45,7 @@ void expect_right(const std::string &contact, const std::string &training, doubl
       std::filesystem::temp_directory_path() / ("rbvi_turned_" + std::to_string(getpid()) + ".h5");
   collectively(PETSC_COMM_WORLD, [&] {
     write_model(tubes.model, path);
-    stored = read_model(path, registry_of({}));
+    stored = read_model(path, {});
     std::filesystem::remove(path);
     online.emplace(*stored);
     EXPECT_TRUE(online->scene().axisymmetric);

@@ -1,7 +1,6 @@
 // Reduced models with the other loads: a temperature, a spring, a total force.
 #include "reduced.hpp"
 
-#include "rbvi/contact/registry.hpp"
 #include "rbvi/model/online.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/scene/case.hpp"
@@ -36,7 +35,7 @@ TEST(LoadsModel, AnswersAsFullSolvesDo) {
       std::filesystem::temp_directory_path() / ("rbvi_loads_" + std::to_string(getpid()) + ".h5");
   collectively(PETSC_COMM_WORLD, [&] {
     write_model(wheel.model, path);
-    stored = read_model(path, registry_of({}));
+    stored = read_model(path, {});
     std::filesystem::remove(path);
   });
   OnlineSolver online(*stored);

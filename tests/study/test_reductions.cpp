@@ -1,5 +1,5 @@
 // Each reduction of the multipliers where its mathematics allows: on obstacles, between two bodies,
-// on supports, with loads; and models of scenes that no catalogue has.
+// on supports, with loads.
 #include "reduced.hpp"
 
 #include "rbvi/contact/support.hpp"
@@ -13,8 +13,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <unistd.h>
 
 namespace rbvi::reductions_test {
 namespace {
@@ -236,54 +234,6 @@ TEST(Reductions, ContactThatFollowsTheDisplacementHasNoFixedOperator) {
   } catch (const Error &error) {
     EXPECT_EQ(error.status(), Status::bad_input);
     EXPECT_NE(std::string(error.what()).find("changes with every step"), std::string::npos);
-  }
-}
-
-/// What makes a model answer without the code of its scene.
-struct ModelOfAnotherScene : testing::Test {
-  std::filesystem::path directory = std::filesystem::path(testing::TempDir()) /
-                                    ("rbvi_another_scene_" + std::to_string(::getpid()));
-  std::filesystem::path path = directory / "model.h5";
-  void SetUp() override { std::filesystem::create_directories(directory); }
-  void TearDown() override { std::filesystem::remove_all(directory); }
-
-  /// No catalogue has it.
-  static Scene block() {
-    Scene scene = make_scene("patch", {{"bodies", "one"}});
-    scene.name = "my_block";
-    return scene;
-  }
-};
-
-TEST_F(ModelOfAnotherScene, IsAnsweredWhereItsFunctionsHaveNames) {
-  Reduced r(block(), "grid:3", PETSC_COMM_SELF);
-  r.reduce({});
-  write_model(r.model, path);
-  const ReducedModel read = read_model(path, catalogue(), false);
-  OnlineSolver with_code(r.model, r.problem.scene()), without(read);
-  const Mu mu{0.0321};
-  const ReducedAnswer one = with_code.solve(mu), two = without.solve(mu);
-  EXPECT_EQ(one.u, two.u);
-  EXPECT_EQ(with_code.multiplier(one), without.multiplier(two));
-  EXPECT_THROW((void)scene_by_code(read.scene, catalogue()), Error);
-}
-
-TEST_F(ModelOfAnotherScene, SaysWhoseCodeItNeedsWhereOneHasNone) {
-  Scene scene = block();
-  scene.motion = [](const FullMu &mu, const Point &) -> Point { return {mu[1], -mu[0], 0}; };
-  Reduced r(scene, "grid:3", PETSC_COMM_SELF);
-  r.model = {};
-  Reduction made = reduce(r.problem, r.samples, {});
-  gather_fields(r.problem, made.bases.pod.basis, made.model);
-  write_model(made.model, path);
-  try {
-    (void)read_model(path, catalogue());
-    FAIL() << "accepted";
-  } catch (const Error &error) {
-    const std::string message = error.what();
-    EXPECT_EQ(error.status(), Status::bad_input);
-    EXPECT_NE(message.find("unknown scene 'my_block'"), std::string::npos) << message;
-    EXPECT_NE(message.find("for 'motion'"), std::string::npos) << message;
   }
 }
 

@@ -76,7 +76,7 @@ TEST(Grouping, EveryNodeTellsItsMemory) {
 
 /// The default sizes of every scene: each rank its own solves.
 TEST(Grouping, DefaultSizesAreSolvedByOneRankEach) {
-  for (const SceneEntry &entry : catalogue().scenes) {
+  for (const SceneEntry &entry : catalogue()) {
     const Scene scene = make_scene(entry.name);
     const std::size_t samples = parse_set(scene.parameters, scene.training).size();
     const Grouping grouping = group_ranks(PETSC_COMM_WORLD, scene, {}, samples, 0);

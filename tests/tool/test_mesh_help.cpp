@@ -24,7 +24,7 @@ void expect_contract(const std::string &text, const MeshRecipe &recipe) {
 }
 
 TEST(MeshHelp, OneSceneIsItsOptionsParametersAndMesh) {
-  for (const SceneEntry &entry : catalogue().scenes) {
+  for (const SceneEntry &entry : catalogue()) {
     const std::string text = printed(entry.name), all = printed("");
     const Scene scene = make_scene(entry.name);
     expect_contract(text, scene.mesh);

@@ -40,14 +40,14 @@ struct Facing {
   /// How far the displaced point is from what it really faces, at rest; empty: as far as `at` says.
   std::function<double(const FullMu &mu, const Point &x, const Point &displacement)> distance{};
   /// The normal alone, for less work, where it does not depend on where the body is.
-  Named<PointMap> normal{};
+  std::function<PointMap> normal{};
   bool asks_place = true; ///< whether `at` asks for PlacedPoint::y
   /// Where a point of the reference boundary is at rest; empty: where the map takes it.
-  Named<PointMap> at_rest{};
+  std::function<PointMap> at_rest{};
   bool follows_state = false;
   /// The unit normal of the body's exact boundary at a point of the reference boundary, out of the
   /// mapped body.
-  Named<PointMap> body_normal{};
+  std::function<PointMap> body_normal{};
   /// The condition is one along that normal, of the deformed body. Only where it follows the state.
   bool along_body = false;
 };
@@ -78,7 +78,6 @@ struct RigidContact {
   Facing facing;
   Friction friction;
   bool lumped;                                    ///< vertex quadrature
-  Record record;                                  ///< by multipliers
   std::vector<ContactCoefficient> coefficients{}; ///< beside that of friction
   /// Edges that are in a boundary of Scene::curves stand for its arcs (of degree 2).
   bool curved = false;

@@ -11,9 +11,9 @@ namespace rbvi {
 /// pressure, up to a limit where there is one.
 struct Friction {
   FrictionLaw law = FrictionLaw::none;
-  Named<Coefficient> value;     ///< threshold or coefficient, >= 0
-  bool only_in_contact = false; ///< Tresca: zero where a node carries no pressure
-  Named<Coefficient> limit{};   ///< of Coulomb's bound, a pressure >= 0; empty: none
+  std::function<Coefficient> value;   ///< threshold or coefficient, >= 0
+  bool only_in_contact = false;       ///< Tresca: zero where a node carries no pressure
+  std::function<Coefficient> limit{}; ///< of Coulomb's bound, a pressure >= 0; empty: none
 };
 
 /// The bound at one mu. Throws failure, naming the value, for a negative one.
@@ -21,9 +21,5 @@ FrictionBound friction_bound(const Friction &friction, const FullMu &all_paramet
 
 /// Gives a recipe the law, and the bound among its coefficients.
 void add_friction(const Friction &friction, ContactRecipe &recipe);
-
-/// What files store of it, as the part "friction" of a record; none without friction.
-void add_friction(const Friction &friction, Record &record);
-Friction friction_in(const Stored &of);
 
 } // namespace rbvi

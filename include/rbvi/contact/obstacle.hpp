@@ -12,7 +12,7 @@ namespace rbvi {
 struct Obstacle {
   std::string region; ///< beside it the body goes on, which outputs count contact at its rim for
   /// psi(mu) at a point of the mapped domain.
-  Named<PointValue> height;
+  std::function<PointValue> height;
   /// b and g by vertex quadrature: the constraint is a bound at each vertex. Else exact, g by a
   /// rule of degree 5. Of degree 2 the pressure of vertex quadrature pushes at the vertices alone:
   /// what lies between them is in equilibrium with the load, and u is of order 1 as with degree 1.
@@ -21,8 +21,5 @@ struct Obstacle {
 
 /// For scalar displacements of degree 1 and 2.
 ContactRecipe obstacle(Obstacle obstacle);
-
-/// "obstacle" in files.
-ContactKind obstacle_kind();
 
 } // namespace rbvi

@@ -33,7 +33,4 @@ struct Pair {
 /// Throws bad_input for large deformations with friction, along e_y or without intersection.
 ContactRecipe two_bodies(Pair pair);
 
-/// "two_bodies" in files.
-ContactKind two_bodies_kind();
-
 } // namespace rbvi

@@ -21,14 +21,14 @@ namespace rbvi {
 struct Support {
   std::string boundary;
   /// Unit normal of contact at a point of the reference boundary, out of the mapped body.
-  Named<PointMap> normal;
+  std::function<PointMap> normal;
   /// Gap along it: u . n <= gap.
-  Named<PointValue> gap;
+  std::function<PointValue> gap;
   Friction friction{};
   bool lumped = false; ///< vertex quadrature
   /// By Nitsche's method: the unit normal of the body's exact boundary at a point of the reference
   /// boundary, out of the mapped body, which its stress acts on; empty: that of the edges.
-  Named<PointMap> body_normal{};
+  std::function<PointMap> body_normal{};
 };
 
 /// A half-plane whose position and tilt can be parameters. With n its unit normal, out of the body
@@ -39,13 +39,13 @@ struct HalfPlane {
   std::string boundary;
   Point normal; ///< without tilt, out of the body, of length 1
   Point pivot;  ///< the plane turns about a point that lies `position` from here along the normal
-  Named<Coefficient> position;
-  Named<Coefficient> tilt{}; ///< radians, counterclockwise; empty: none
+  std::function<Coefficient> position;
+  std::function<Coefficient> tilt{}; ///< radians, counterclockwise; empty: none
   /// The true surface of the body at a point of the reference boundary, mapped; empty: the edges.
-  Named<PointMap> surface{};
+  std::function<PointMap> surface{};
   Friction friction{};
-  bool lumped = false;           ///< vertex quadrature
-  Named<PointMap> body_normal{}; ///< Support::body_normal
+  bool lumped = false;                   ///< vertex quadrature
+  std::function<PointMap> body_normal{}; ///< Support::body_normal
 };
 
 /// A surface where the body now is: large deformations (Niakh 2022, appendix A). A point x of the
@@ -63,13 +63,13 @@ struct HalfPlane {
 /// body stays linear. Integrals are over the undeformed curve.
 struct RigidSurface {
   std::string boundary;
-  Named<Surface> surface;
+  std::function<Surface> surface;
   /// Where a point of the reference boundary is at rest; empty: where the map takes its edge.
-  Named<PointMap> at_rest{};
+  std::function<PointMap> at_rest{};
   /// The unit normal at rest, out of the mapped body. Where it is given, the condition is n . u <=
   /// n . s - distance (n . nu) with n that of the deformed body in place of -nu; it has the same
   /// limit, no curvature, and may fail from rest.
-  Named<PointMap> body_normal{};
+  std::function<PointMap> body_normal{};
   Friction friction{};
   bool lumped = false; ///< vertex quadrature
 };
@@ -90,11 +90,6 @@ inline ContactRecipe half_plane(const HalfPlane &plane) {
 inline ContactRecipe rigid_surface(const RigidSurface &surface) {
   return by_multipliers(rigid_contact(surface));
 }
-
-/// Those of a record.
-Support support_in(const Stored &of);
-HalfPlane half_plane_in(const Stored &of);
-RigidSurface surface_in(const Stored &of);
 
 /// Outputs::gap_error at the vertices of a support: see ContactInterface::gap_error.
 double gap_error(const ContactInterface &interface, const Scene &scene, const Facing &facing,

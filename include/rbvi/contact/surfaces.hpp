@@ -15,25 +15,28 @@ struct Circle {
 
 /// The point of the nearest of these circles that is next to x.
 Point on_circles(const std::vector<Circle> &circles, const Point &x);
-Named<PointMap> on_circles(const std::vector<Circle> &circles);
+std::function<PointMap> on_circles(const std::vector<Circle> &circles);
 /// The unit normal of the nearest circle, out of the body.
-Named<PointMap> normals_of_circles(const std::vector<Circle> &circles);
+std::function<PointMap> normals_of_circles(const std::vector<Circle> &circles);
 
 /// outer(mu, inner(mu, x)).
-Named<PointMap> composed(const Named<PointMap> &outer, const Named<PointMap> &inner);
+std::function<PointMap> composed(const std::function<PointMap> &outer,
+                                 const std::function<PointMap> &inner);
 
 /// The outside of a disk about (x, y).
-Named<Surface> disk_surface(const Named<Coefficient> &x, const Named<Coefficient> &y,
-                            const Named<Coefficient> &radius);
+std::function<Surface> disk_surface(const std::function<Coefficient> &x,
+                                    const std::function<Coefficient> &y,
+                                    const std::function<Coefficient> &radius);
 
 /// Where a function is positive, value_and_gradient = (phi, phi_x, phi_y) (core/formula.hpp). The
 /// next point of phi = 0 is looked for from the point itself, along the gradient. Evaluation throws
 /// failure where none is found, or phi has no gradient.
-Named<Surface> level_set(const Named<PointMap> &value_and_gradient);
+std::function<Surface> level_set(const std::function<PointMap> &value_and_gradient);
 
 /// Unit normal, out of the body, of a surface that the point at(mu, x) faces: -(gradient of the
 /// distance).
-Named<PointMap> normal_of_surface(const Named<Surface> &surface, const Named<PointMap> &at);
+std::function<PointMap> normal_of_surface(const std::function<Surface> &surface,
+                                          const std::function<PointMap> &at);
 
 /// What the partner of a point on the surface is.
 enum class GapKind {
@@ -61,10 +64,8 @@ private:
 
 /// (partner - at) . normal, at = at(mu, x) (Niakh 2022, (3.4)). Evaluation throws failure where the
 /// line misses the surface.
-Named<PointValue> gap_to_surface(const Named<Surface> &surface, const Named<PointMap> &at,
-                                 const Named<PointMap> &normal, GapKind kind);
-
-/// The makers of these functions.
-FunctionLibrary surface_functions();
+std::function<PointValue> gap_to_surface(const std::function<Surface> &surface,
+                                         const std::function<PointMap> &at,
+                                         const std::function<PointMap> &normal, GapKind kind);
 
 } // namespace rbvi

@@ -2,8 +2,6 @@
 // of contact (contact/*/): obstacle(), two_bodies(), by_multipliers(), by_nitsche(), ...
 #pragma once
 
-#include "rbvi/core/record.hpp"
-
 #include <functional>
 #include <memory>
 #include <numbers>
@@ -65,19 +63,10 @@ struct ContactRecipe {
   std::vector<ContactCoefficient> coefficients{};
   /// `scene` must outlive the interface. Throws bad_input where the mesh does not suit it.
   std::function<std::unique_ptr<ContactInterface>(const Scene &scene, InterfaceMesh mesh)> make;
-  /// What files store of it, without its entities: they have its mesh.
-  Record record{};
   std::string name{}; ///< of its entry in the case; "": it has none (contact_name)
 };
 
 /// "contact 'floor' on 'foot'", or "contact on 'foot'": for messages.
 std::string described(const ContactRecipe &contact);
-
-/// A kind of contact that files know by name.
-struct ContactKind {
-  std::string name;
-  int version;
-  std::function<ContactRecipe(const Stored &)> make;
-};
 
 } // namespace rbvi

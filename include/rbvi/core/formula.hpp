@@ -1,5 +1,4 @@
-// Functions of a scene that are written as expressions: their text is their record, so that a model
-// file holds all that its evaluation needs.
+// Functions of a scene that are written as expressions.
 #pragma once
 
 #include "rbvi/core/expression.hpp"
@@ -23,13 +22,13 @@ struct Formula {
 };
 
 /// Throws bad_input for names that are none of these.
-Named<Coefficient> coefficient_of(const Formula &value);
-Named<PointValue> point_value_of(const Formula &value);
+std::function<Coefficient> coefficient_of(const Formula &value);
+std::function<PointValue> point_value_of(const Formula &value);
 /// Components that are left out are 0.
-Named<PointMap> point_map_of(const Formula &components);
-Named<Traction> traction_of(const Formula &components);
+std::function<PointMap> point_map_of(const Formula &components);
+std::function<Traction> traction_of(const Formula &components);
 /// A value and its derivatives by x and y.
-Named<PointMap> value_and_gradient_of(const Formula &value);
+std::function<PointMap> value_and_gradient_of(const Formula &value);
 /// What outputs may name beside parameters, in the order of output_fields(); what there is not at
 /// some place is NaN there. x, y: where the map takes the point; ux, uy, of a membrane u: the
 /// displacement, with the motion; of contact pressure, gap, tangential stress, slip and whether
@@ -62,10 +61,10 @@ enum : std::size_t {
 using OutputFields = std::array<double, field::count>;
 const std::vector<std::string> &output_fields();
 /// Two values in them: of an output, and whether it is asked for there (not 0).
-Named<FieldValues> field_values_of(const Formula &values);
+std::function<FieldValues> field_values_of(const Formula &values);
 /// Throws bad_input with the message of the first of these conditions that is 0 or NaN;
 /// {expression} in it becomes the value.
-Named<Check> check_of(const Formula &conditions, const std::vector<std::string> &messages);
+std::function<Check> check_of(const Formula &conditions, const std::vector<std::string> &messages);
 
 /// map(mu, x) of many points: those of an expression are evaluated together, in less time.
 std::vector<Point> images(const std::function<PointMap> &map, const FullMu &mu,
@@ -80,8 +79,5 @@ std::vector<int> dependence_of(const Formula &formula);
 bool depends_on_point(const Formula &formula);
 /// Whether a name is one of those of coordinates.
 bool is_coordinate(const std::string &name);
-
-/// The makers of these functions.
-FunctionLibrary formula_functions();
 
 } // namespace rbvi

@@ -1,14 +1,12 @@
 // The functions that scenes are made of, by what they take and return, and those that many scenes
-// share. Each has a maker under a name of its own; a registry lists the makers of a program, so
-// that a model file names its functions and holds no code.
+// share.
 #pragma once
 
 #include "rbvi/core/parameters.hpp"
-#include "rbvi/core/record.hpp"
 
 #include <array>
 #include <cmath>
-#include <variant>
+#include <functional>
 
 namespace rbvi {
 
@@ -79,23 +77,11 @@ using Traction = Point(const FullMu &mu, const Point &x, const Point &n);
 using FieldValues = void(const FullMu &mu, const double *fields, std::size_t count,
                          double *results);
 
-using AnyMaker = std::variant<Maker<NumberMap>, Maker<Coefficient>, Maker<Check>, Maker<PointValue>,
-                              Maker<PointMap>, Maker<Surface>, Maker<Material>, Maker<Kernel>,
-                              Maker<Traction>, Maker<FieldValues>>;
-using FunctionLibrary = std::vector<AnyMaker>;
-
-/// The makers of the functions below.
-FunctionLibrary common_functions();
-
-/// The function of a record. Throws bad_input for one that the registry does not have, or has in
-/// another version.
-template <class Signature> Named<Signature> made(const Stored &stored);
-
 /// Coordinates of parameters: x -> log x and back, x -> log(1 - 2 x) and back.
-Named<NumberMap> logarithm();
-Named<NumberMap> exponential();
-Named<NumberMap> logarithm_to_half();
-Named<NumberMap> exponential_to_half();
+std::function<NumberMap> logarithm();
+std::function<NumberMap> exponential();
+std::function<NumberMap> logarithm_to_half();
+std::function<NumberMap> exponential_to_half();
 
 /// What affine, parameter and constant make; functions that are made of them evaluate it directly.
 struct AffineCoefficient {
@@ -107,26 +93,28 @@ struct AffineCoefficient {
 };
 
 /// value + factor (the parameter of this index in parameters.all).
-Named<Coefficient> affine(double value, double factor, int index);
+std::function<Coefficient> affine(double value, double factor, int index);
 /// The value of a parameter, and of none.
-Named<Coefficient> parameter(int index);
-Named<Coefficient> constant(double value);
+std::function<Coefficient> parameter(int index);
+std::function<Coefficient> constant(double value);
 
-Named<PointMap> identity();
-bool is_identity(const Named<PointMap> &map);
+std::function<PointMap> identity();
+bool is_identity(const std::function<PointMap> &map);
+/// Whether a map is the same at all points: one that everywhere() makes.
+bool is_everywhere(const std::function<PointMap> &map);
 /// The same at all points for all mu.
-Named<PointValue> everywhere(double value);
-Named<PointMap> everywhere(const Point &vector);
+std::function<PointValue> everywhere(double value);
+std::function<PointMap> everywhere(const Point &vector);
 /// Up to three components.
-Named<PointMap> everywhere(const std::vector<Named<Coefficient>> &components);
-Named<Material> everywhere(const Lame &material);
+std::function<PointMap> everywhere(const std::vector<std::function<Coefficient>> &components);
+std::function<Material> everywhere(const Lame &material);
 /// The same at all points.
-Named<PointValue> everywhere(const Named<Coefficient> &value);
+std::function<PointValue> everywhere(const std::function<Coefficient> &value);
 /// x -> scale x. Of an affine scale it is a Scaling.
 struct Scaling {
   AffineCoefficient scale;
   Point operator()(const FullMu &mu, const Point &x) const { return scale(mu) * x; }
 };
-Named<PointMap> scaled(const Named<Coefficient> &scale);
+std::function<PointMap> scaled(const std::function<Coefficient> &scale);
 
 } // namespace rbvi

@@ -93,7 +93,7 @@ struct MeshRecipe {
 /// domain; of the components that the boundary fixes. As with the terms of operators, theta makes
 /// it exact: value must not depend on mu, which is empty there.
 struct ImposedTerm {
-  Named<PointMap> value;
+  std::function<PointMap> value;
   std::optional<std::vector<Factor>> theta = {}; ///< the product of these; unset: value has mu
   /// Without theta: the parameters (as in Factor) that value depends on; unset: all.
   std::optional<std::vector<int>> parameters = {};
@@ -117,17 +117,17 @@ struct TiedBoundary {
 /// A coordinate of a parameter in which the solutions vary smoothly: x = of(value), increasing or
 /// decreasing, value = back(x).
 struct Coordinate {
-  Named<NumberMap> of, back;
+  std::function<NumberMap> of, back;
 };
 
 /// A material of an elastic body: Lame's constants at the centre of a reference cell, constant on
 /// the cell; in 2D of plane strain, or of a body that is turned.
 struct BodyMaterial {
   std::vector<std::string> regions; ///< of this material; none: the whole mesh
-  Named<Material> of_cell;
+  std::function<Material> of_cell;
   /// At a point of the reference domain, the same in all directions: the strain that has no stress,
   /// such as a thermal one. Empty: none.
-  Named<PointValue> free_strain{};
+  std::function<PointValue> free_strain{};
 };
 
 /// An output of the scene's own (contact/named_outputs.hpp).
@@ -146,11 +146,11 @@ struct OutputForm {
   Kind kind = Kind::integral;
   Place place = Place::contact;
   std::vector<std::string> at{}; ///< contacts, boundaries or regions; no region: the whole mesh
-  Named<FieldValues> values{};   ///< what is integrated, ..., and where
-  bool conditional = false;      ///< it is not asked for everywhere
-  Point vector{};                ///< the point, or the direction of a reaction
-  std::vector<Mean> means{};     ///< of a spring
-  Named<Coefficient> stiffness{}, preload{}; ///< of a spring; empty: 0
+  std::function<FieldValues> values{};               ///< what is integrated, ..., and where
+  bool conditional = false;                          ///< it is not asked for everywhere
+  Point vector{};                                    ///< the point, or the direction of a reaction
+  std::vector<Mean> means{};                         ///< of a spring
+  std::function<Coefficient> stiffness{}, preload{}; ///< of a spring; empty: 0
 };
 
 /// Outputs of one full solve that are known.
@@ -167,6 +167,10 @@ constexpr const char *axis_of_turning = "x = 0";
 struct Scene {
   std::string name;
   std::string summary; ///< one line
+  /// What samples and models keep of it: the resolved case, a line "path: value" for each value
+  /// (scene/stored_scene.hpp); of a program the name and version of its entry. Empty: the scene has
+  /// no name, and models of it are not read again. Who changes a scene of a case in code clears it.
+  std::string tree{};
   int dim = 2;
   int components = 1; ///< of the displacement
   int degree = 1;     ///< of the displacement on each cell: 1 or 2
@@ -179,12 +183,12 @@ struct Scene {
   std::map<int, Coordinate> coordinates; ///< of some of parameters.all; the others: themselves
   /// Throws bad_input where values of all parameters that are valid one by one make no sense
   /// together; empty: they always do.
-  Named<Check> check_parameters;
+  std::function<Check> check_parameters;
   std::string training = "", validation = ""; ///< default sets, as parse_set reads them
   MeshRecipe mesh;
 
   /// h(mu), from the reference to the mapped domain.
-  Named<PointMap> map;
+  std::function<PointMap> map;
   /// The exact curve of a boundary, or of the rim of a region, by its name: brings a point beside
   /// it onto it. Refined vertices and middles of edges are those of the curve of their own
   /// boundary.
@@ -195,7 +199,7 @@ struct Scene {
   /// Rigid motion of each body at a point of the reference domain, which the displacement is
   /// measured from: u = motion + w, w = 0 (or FixedBoundary::values) where it is fixed. Costs
   /// nothing, unlike other Dirichlet data; empty: zero.
-  Named<PointMap> motion;
+  std::function<PointMap> motion;
   /// The data are symmetric about x = 0, and so are the solutions on a mesh that is, where the
   /// parameter `skewed_by`, if there is one, is fixed at zero; see is_symmetric.
   bool symmetric = false;
@@ -230,19 +234,15 @@ struct SceneEntry {
   std::string name, summary{};
   std::vector<SceneOption> options{};
   std::function<Scene(const SceneOptions &)> make{};
-  FunctionLibrary functions{}; ///< those of its own that files know by name
+  int version = 1; ///< of a program's scene, raised with its answers: models keep it; 0: a case
   std::vector<CaseSetting> settings{};
   std::vector<std::pair<std::string, std::string>> variants{}; ///< of its file, with what they are
   std::map<std::string, double> mesh_numbers{};                ///< of the .geo that its mesh is
   std::optional<UnitSystem> units{};                           ///< of numbers with a unit
 };
 
-/// What a program knows by name, and finds in model files (contact/registry.hpp).
-struct Registry {
-  std::vector<SceneEntry> scenes;
-  std::vector<ContactKind> kinds;
-  FunctionLibrary functions; ///< their makers
-};
+/// The scenes that a program knows by name.
+using Registry = std::vector<SceneEntry>;
 
 /// Whether some interface has friction.
 bool has_friction(const Scene &scene);

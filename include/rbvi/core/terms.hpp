@@ -28,7 +28,7 @@ struct Mean {
 /// (2,3).
 struct Form {
   std::string region; ///< "" for the whole domain
-  Named<Kernel> kernel;
+  std::function<Kernel> kernel;
   /// Not "": over the facets of this boundary. `cell` is then the one behind the facet, whose
   /// vertices come first and see it outwards (facet_measure); the nodes are the facet's alone.
   std::string boundary = "";
@@ -44,7 +44,7 @@ struct Form {
 /// A factor of a coefficient.
 struct Factor {
   std::string name; ///< two factors of one name are the same function
-  Named<Coefficient> value;
+  std::function<Coefficient> value;
   std::vector<int> parameters; ///< indices into parameters.all that it depends on
 };
 

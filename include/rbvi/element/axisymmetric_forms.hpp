@@ -10,7 +10,7 @@ namespace rbvi {
 /// int sigma(u) : eps(v) over the mapped cells, the material constant on each as in elasticity():
 /// exact but for the square of the hoop strain, which is rational. Throws bad_input for a degree
 /// other than 1 and 2.
-Form axisymmetric_elasticity(const std::string &region, const Named<Material> &material,
+Form axisymmetric_elasticity(const std::string &region, const std::function<Material> &material,
                              int degree);
 
 /// int u . v + length^2 grad u : grad v in space over the reference cells, the hoop strain part of
@@ -19,8 +19,5 @@ Form axisymmetric_h1_product(double length, int degree);
 
 /// The product of V of this length (2.44), of a body of the plane or one that is turned.
 Sum h1_product_of(const Scene &scene, double length);
-
-/// The makers of these kernels.
-FunctionLibrary axisymmetric_functions();
 
 } // namespace rbvi

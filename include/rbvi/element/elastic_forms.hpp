@@ -23,41 +23,39 @@ Form elasticity(const std::string &region, const Lame &material, int degree = 1)
 
 /// Elasticity with a material that is constant on each cell: `material(mu, centre)`, the centre
 /// that of the reference cell.
-Form elasticity(const std::string &region, const Named<Material> &material, int degree);
+Form elasticity(const std::string &region, const std::function<Material> &material, int degree);
 
 /// lame() at each point, or that of a thin plate (plane stress), whose lambda is 2 lambda shear /
 /// (lambda + 2 shear).
-Named<Material> isotropic(const Named<PointValue> &young, const Named<PointValue> &poisson,
-                          bool plane_stress);
+std::function<Material> isotropic(const std::function<PointValue> &young,
+                                  const std::function<PointValue> &poisson, bool plane_stress);
 
 /// Of Lame's constants; `plane_stress` as above. Throws bad_input where asked unless the shear
 /// modulus and 3 lambda + 2 shear are positive.
-Named<Material> of_lame(const Named<PointValue> &lambda, const Named<PointValue> &shear,
-                        bool plane_stress);
+std::function<Material> of_lame(const std::function<PointValue> &lambda,
+                                const std::function<PointValue> &shear, bool plane_stress);
 
 /// What a strain that is the same in all directions makes of stress where nothing moves: 3 lambda +
 /// 2 shear; in plane stress, in its lambda, 2 lambda + 2 shear.
 double swelling_modulus(const Lame &material, bool plane_stress);
 
 /// Whether a material is one of isotropic() or of_lame() in plane stress: sigma_zz is 0 there.
-bool is_plane_stress(const Named<Material> &material);
+bool is_plane_stress(const std::function<Material> &material);
 
 /// One constant alone, `factor`; the other is 0.
-Named<Material> lambda_alone(const Named<PointValue> &factor);
-Named<Material> shear_alone(const Named<PointValue> &factor);
+std::function<Material> lambda_alone(const std::function<PointValue> &factor);
+std::function<Material> shear_alone(const std::function<PointValue> &factor);
 
 /// The same constants of a Young's modulus 1.
-Named<Coefficient> lame_lambda(const Named<Coefficient> &poisson, bool plane_stress = false);
-Named<Coefficient> lame_shear(const Named<Coefficient> &poisson);
+std::function<Coefficient> lame_lambda(const std::function<Coefficient> &poisson,
+                                       bool plane_stress = false);
+std::function<Coefficient> lame_shear(const std::function<Coefficient> &poisson);
 
 /// int modulus strain div v, div in space: the load of a strain without stress, such as a thermal
 /// one, in triangles. `modulus` at the middle of a cell of the mesh, as materials are; `strain` at
 /// its points. Exact where the strain is of degree 4 (axisymmetric: 3) less that of v. Throws
 /// bad_input for a degree other than 1 and 2.
-Form strain_load(const std::string &region, const Named<PointValue> &modulus,
-                 const Named<PointValue> &strain, int degree, bool axisymmetric);
-
-/// The makers of these functions.
-FunctionLibrary elastic_functions();
+Form strain_load(const std::string &region, const std::function<PointValue> &modulus,
+                 const std::function<PointValue> &strain, int degree, bool axisymmetric);
 
 } // namespace rbvi

@@ -8,8 +8,8 @@ namespace rbvi {
 
 /// int t . v, exact where t is of degree 3 (axisymmetric: 2). Throws bad_input for a degree other
 /// than 1 and 2.
-Form traction_load(const std::string &boundary, const Named<Traction> &traction, int components,
-                   int degree, bool axisymmetric = false);
+Form traction_load(const std::string &boundary, const std::function<Traction> &traction,
+                   int components, int degree, bool axisymmetric = false);
 
 /// - int value n . v: a pressure pushes. Throws likewise.
 Form pressure_load(const std::string &boundary, double value, int components, int degree);
@@ -17,8 +17,5 @@ Form pressure_load(const std::string &boundary, double value, int components, in
 /// stiffness * int u . v: springs of so much per length or area, in every direction. Throws
 /// likewise.
 Form spring(const std::string &boundary, double stiffness, int components, int degree);
-
-/// The makers of these kernels.
-FunctionLibrary facet_functions();
 
 } // namespace rbvi

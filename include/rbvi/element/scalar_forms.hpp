@@ -10,9 +10,6 @@
 
 namespace rbvi {
 
-/// The makers of laplace, constant_load and body_load.
-FunctionLibrary scalar_functions();
-
 /// int grad u . grad v over the mapped cells (2.37): nodes x nodes.
 Form laplace(const std::string &region, int degree = 1);
 
@@ -25,8 +22,8 @@ Form constant_load(const std::string &region, double value, int degree = 1);
 
 /// int force . v over the mapped cells, exact where the force is of degree 3 (axisymmetric: 2) in
 /// x, a point of them: local dof = node * components + component.
-Form body_load(const std::string &region, const Named<PointMap> &force, int components, int degree,
-               bool axisymmetric = false);
+Form body_load(const std::string &region, const std::function<PointMap> &force, int components,
+               int degree, bool axisymmetric = false);
 
 /// int eta_i eta_j over the reference cells: vertices x vertices.
 Form l2_product(const std::string &region);

@@ -241,8 +241,8 @@ struct ModelHistory {
 };
 
 struct ReducedModel {
-  /// Read from a file, what its record holds (scene_record.hpp), or by the scene's code where a
-  /// function has no name. Its parameters are those of the model, free and fixed.
+  /// Read from a file, what its tree says (scene/stored_scene.hpp). Its parameters are those of the
+  /// model, free and fixed.
   Scene scene;
   BodyModel body;
   ContactModel contact;
@@ -257,7 +257,7 @@ struct ReducedModel {
   bool evaluates_contact() const { return contact.b.size() == 0 && has_multipliers(); }
 };
 
-inline constexpr int model_schema = 22;
+inline constexpr int model_schema = 23;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (fields may all be empty).
@@ -271,9 +271,9 @@ std::filesystem::path fields_file(const std::filesystem::path &model);
 /// not for a model without fields. Throws failure (check_model, H5Writer::commit).
 void write_model(const ReducedModel &model, const std::filesystem::path &path);
 
-/// Throws bad_input (see H5Reader), also for functions or a scene that the registry does not have,
-/// or parameters that are not those of the scene, and where the fields are asked for and are not
-/// there or another model's. `with_fields` false leaves them out.
+/// Throws bad_input (see H5Reader), also for a program's scene that the registry does not have, or
+/// has in another version, for parameters that are not those of the scene, and where the fields are
+/// asked for and are not there or another model's. `with_fields` false leaves them out.
 ReducedModel read_model(const std::filesystem::path &path, const Registry &registry,
                         bool with_fields = true);
 
@@ -301,8 +301,8 @@ Point point_of(const Matrix &points, Index i);
 /// The interfaces of the model. `scene` must outlive them. Throws bad_input where they do not fit.
 Contact contact_of(const ReducedModel &model, const Scene &scene);
 
-/// The whole scene of this name, these options and parameters, by its code; ranges of validity are
-/// those of the code. Throws bad_input for what the registry does not have.
-Scene scene_by_code(const Scene &stored, const Registry &registry);
+/// A scene with the name, the box and the fixed values of another; ranges of validity are its own.
+/// Throws bad_input where the parameters are others or the box leaves these ranges.
+Scene in_box_of(const Scene &stored, Scene scene);
 
 } // namespace rbvi

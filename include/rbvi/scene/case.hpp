@@ -4,6 +4,7 @@
 #pragma once
 
 #include "rbvi/core/scene.hpp"
+#include "rbvi/scene/tree.hpp"
 
 namespace rbvi {
 
@@ -25,6 +26,10 @@ bool is_scene_file(const std::string &text, const std::string &file);
 /// Throws bad_input with every defect of the text that can be found without a mesh.
 SceneEntry read_case(const std::string &text, const std::string &file,
                      const CaseChanges &changes = {});
+SceneEntry read_case(CaseNode root, const std::string &file, const CaseChanges &changes);
+
+/// The scene of a case whose choices and changes are made. Throws bad_input with its defects.
+Scene read_scene(const CaseNode &resolved);
 
 /// A case to begin with: a block with friction on a floor.
 std::string new_case();

@@ -42,6 +42,7 @@ std::vector<ContactPoint> contact_points(const std::vector<Sample> &samples);
 
 /// Everything that a sample depends on beside mu: name -> value.
 using Settings = std::map<std::string, std::string>;
+inline constexpr const char *whole_scene = "whole scene"; ///< the setting that is Scene::tree
 
 /// The settings of a problem and its solver: scene, its options, fixed parameters, mesh, method and
 /// tolerances.
