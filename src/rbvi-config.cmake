@@ -1,4 +1,5 @@
-# find_package(rbvi [COMPONENTS online offline]): the targets rbvi::online and rbvi::offline.
+# find_package(rbvi [COMPONENTS online offline c]): the targets rbvi::online, rbvi::offline and rbvi::c,
+# the library of rbvi.h.
 if(NOT rbvi_FIND_COMPONENTS)
   set(rbvi_FIND_COMPONENTS online offline)
 endif()
@@ -7,6 +8,6 @@ foreach(component ${rbvi_FIND_COMPONENTS})
   include(${CMAKE_CURRENT_LIST_DIR}/rbvi-${component}.cmake OPTIONAL RESULT_VARIABLE found)
   if(NOT found)
     set(rbvi_FOUND FALSE)
-    set(rbvi_NOT_FOUND_MESSAGE "rbvi has no component ${component}: it has online and offline")
+    set(rbvi_NOT_FOUND_MESSAGE "rbvi has no component ${component}: it has online, offline and c")
   endif()
 endforeach()

@@ -1,6 +1,9 @@
-# What the libraries in rbvi_FIND_COMPONENTS need: rbvi::online Eigen and serial HDF5 alone.
-find_package(PkgConfig REQUIRED)
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+# What the libraries in rbvi_FIND_COMPONENTS need: rbvi::online Eigen and serial HDF5 alone, rbvi::c
+# nothing.
+if(NOT rbvi_FIND_COMPONENTS STREQUAL "c")
+  find_package(PkgConfig REQUIRED)
+  find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+endif()
 if("online" IN_LIST rbvi_FIND_COMPONENTS)
   pkg_check_modules(HDF5_SERIAL REQUIRED IMPORTED_TARGET hdf5-serial)
 endif()

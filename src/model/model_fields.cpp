@@ -3,7 +3,6 @@
 #include "rbvi/model/fields_file.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/io/checksum.hpp"
 #include "rbvi/io/h5.hpp"
 
 namespace rbvi {
@@ -20,16 +19,6 @@ bool holds_fields(const std::filesystem::path &path, const std::string &key) {
 }
 
 } // namespace
-
-std::string key_of_fields(const ReducedModel &model) {
-  if (model.fields.basis.size() == 0) return model.fields.key;
-  const auto hash = [](const auto *data, auto size) {
-    return std::to_string(fnv1a(data, static_cast<std::size_t>(size) * sizeof(*data)));
-  };
-  return hash(model.fields.basis.data(), model.fields.basis.size()) + "-" +
-         hash(model.fields.points.data(), model.fields.points.size()) + "-" +
-         hash(model.fields.cells.data(), std::ssize(model.fields.cells));
-}
 
 FieldsFile::FieldsFile(const std::filesystem::path &model_path, const std::string &key)
     : path_(fields_file(model_path)), file_(path_) {

@@ -48,6 +48,9 @@ void list_fields(const Store &store, const std::string &group, Model &model) {
 /// Tells the fields of one model from those of another; "" for a model without.
 std::string key_of_fields(const ReducedModel &model);
 
+/// Makes the scene of a model that was read, of its tree. Throws as read_model.
+void take_scene(ReducedModel &model, const Registry &registry);
+
 /// Writes the fields that a model holds in memory; leaves the file as it is where it has them.
 void write_fields(const ReducedModel &model, const std::filesystem::path &model_path);
 

@@ -227,6 +227,30 @@ Vector OnlineSolver::field(const ReducedAnswer &solution) const {
   return u;
 }
 
+Vector OnlineSolver::at_interface(const FullMu &mu, const Vector &columns,
+                                  std::size_t interface) const {
+  const InterfaceMesh &mesh = contact_.interfaces[interface]->mesh();
+  Vector u = Vector::Zero(std::ssize(mesh.dofs));
+  for (Index i = 0; i < u.size(); ++i)
+    if (const int column = mesh.dofs[i]; column >= 0) u[i] = columns[column];
+  if (!mesh.imposed_by.empty()) u += imposed_values(scene_, mu, mesh.points, mesh.imposed_by);
+  return u;
+}
+
+Grid OnlineSolver::contact_grid(const ReducedAnswer &solution, std::size_t interface) const {
+  const std::vector<int> &dofs = model_.contact.trace_dofs;
+  const Vector known = model_.contact.trace * solution.u;
+  Vector columns = known;
+  if (!dofs.empty()) {
+    columns = Vector::Constant(model_.contact_dofs(), std::numeric_limits<double>::quiet_NaN());
+    columns(dofs) = known;
+  }
+  const Index rows = contact_.interfaces[interface]->dual().size();
+  return contact_.interfaces[interface]->fields(
+      solution.mu, at_interface(solution.mu, columns, interface),
+      multiplier(solution).segment(contact_.first_row[interface], rows), false);
+}
+
 void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vector &lambda,
                                         Outputs &outputs) const {
   const bool faces_surfaces = !scene_.small && !model_.evaluates_contact() &&
@@ -234,14 +258,8 @@ void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vec
   if (scene_.outputs.empty() && !faces_surfaces) return;
   Vector columns; // once for all interfaces
   const auto of_interface = [&](std::size_t interface) {
-    const InterfaceMesh &mesh = contact_.interfaces[interface]->mesh();
     if (columns.size() == 0) columns = model_.contact.trace * solution.u;
-    Vector u = Vector::Zero(std::ssize(mesh.dofs));
-    for (Index i = 0; i < u.size(); ++i)
-      if (const int column = mesh.dofs[i]; column >= 0) u[i] = columns[column];
-    if (!mesh.imposed_by.empty())
-      u += imposed_values(scene_, solution.mu, mesh.points, mesh.imposed_by);
-    return u;
+    return at_interface(solution.mu, columns, interface);
   };
   add_named_outputs(scene_, contact_, solution.mu,
                     {contact_shares_, of_interface, cell_outputs_.at(solution.mu, solution.u),

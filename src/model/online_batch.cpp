@@ -125,24 +125,6 @@ long count_queries(const OnlineArguments &arguments, const Scene &scene) {
   return count;
 }
 
-/// Which outputs this model has: those of the first of its training parameters, or of some random
-/// ones, that it answers.
-Outputs example(OnlineSolver &solver, const OnlineArguments &arguments) {
-  const Matrix &trained = solver.model().made.trained_mu;
-  std::vector<Mu> candidates = parse_set(solver.scene().parameters, "random:100:1");
-  for (Index p = trained.cols(); p-- > 0;)
-    candidates.insert(candidates.begin(), Mu(trained.col(p).begin(), trained.col(p).end()));
-  ReducedAnswer solution;
-  for (const Mu &mu : candidates) {
-    try {
-      return answer(solver, mu, arguments, solution);
-    } catch (const Error &) {
-      continue;
-    }
-  }
-  return {};
-}
-
 /// The next query; a row of a stream that is none becomes a row of the table. Nothing at the end.
 std::optional<Mu> next_query(ParameterReader &reader, OutputTable &table, Tally &tally) {
   for (;;) {
@@ -231,7 +213,10 @@ void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::os
   const bool to_file = !arguments.out.empty() && arguments.out != "-";
   Tally tally;
   tally.contact_points = material_points(solver.contact());
-  const Outputs like = example(solver, arguments);
+  const Outputs like = example_outputs(solver.model(), [&](const Mu &mu) {
+    ReducedAnswer unused;
+    return answer(solver, mu, arguments, unused);
+  });
   TableFile file(to_file ? arguments.out : "", out);
   {
     QueryProgress progress(total);

@@ -6,6 +6,7 @@
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/io/system_error.hpp"
 #include "rbvi/io/write_atomically.hpp"
+#include "rbvi/model/model_image.hpp"
 #include "rbvi/model/print.hpp"
 #include "rbvi/model/solution_vtu.hpp"
 #include "rbvi/model/training_samples.hpp"
@@ -50,6 +51,8 @@ void check_combination(const OnlineArguments &given) {
   if (given.model.empty()) throw bad_input("no model is named; --help shows how");
   const bool one = !given.mu.empty(), many = !given.queries.empty();
   if (one && many) throw bad_input("--mu and --queries exclude each other");
+  if (!given.pack.empty() && (one || many))
+    throw bad_input("--pack takes no --mu and no --queries");
   if (given.warm && !many) throw bad_input("--warm needs --queries");
   if (!given.vtu.empty() && !one) throw bad_input("--vtu needs --mu");
   if (!given.out.empty() && !one && !many) throw bad_input("--out needs --mu or --queries");
@@ -78,6 +81,9 @@ const std::vector<OnlineOption> &online_options() {
        "with --mu: the field, and the contact region (of two bodies the curve) in FILE_contact, of "
        "several contacts each in FILE_contact_NAME",
        &Arguments::vtu},
+      {"pack", "FILE",
+       "the model as one image for librbvi (include/rbvi.h), with its fields where their file is",
+       &Arguments::pack},
       {"full", "", "reconstruct the field: adds min_u", nullptr, &Arguments::full},
       {"decorrelated", "", "without the supremizers or responses beside the modes", nullptr,
        &Arguments::decorrelated},
@@ -207,9 +213,17 @@ void run(const OnlineArguments &arguments, const Registry &registry, std::ostrea
     out << "rbvi-online " RBVI_VERSION "\n";
     return;
   }
-  const bool fields = arguments.full || !arguments.vtu.empty();
+  const bool packs = !arguments.pack.empty();
+  const bool fields = arguments.full || !arguments.vtu.empty() ||
+                      (packs && fs::exists(fields_file(arguments.model)));
   ReducedModel model = read_model(arguments.model, registry, fields);
   if (arguments.decorrelated) model = leading(model, model.body.modes, model.contact.generators);
+  if (packs) {
+    check_overwriting({"--pack", arguments.pack}, {{"the model", arguments.model}});
+    write_atomically(arguments.pack, image_of(model));
+    print_written(out, {arguments.pack});
+    return;
+  }
   if (arguments.mu.empty() && arguments.queries.empty()) {
     print_model(out, model);
     return;

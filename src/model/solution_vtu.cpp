@@ -110,6 +110,11 @@ void name_parameters(const Scene &scene, const FullMu &all_parameters, Grid &gri
   }
 }
 
+Grid body_grid(const Scene &scene, const FullMu &all, const ReducedModel &model, const Vector &u) {
+  const Vector none;
+  return bodies({scene, all, model, u, none, displacement(scene, all, model.fields.points, u)});
+}
+
 fs::path file_beside(const fs::path &path, const std::string &suffix) {
   return path.parent_path() / (path.stem().string() + suffix + path.extension().string());
 }

@@ -1,6 +1,8 @@
 #include "rbvi/model/training_samples.hpp"
 
 #include "rbvi/core/box.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/io/parameter_sets.hpp"
 
 namespace rbvi {
 
@@ -36,6 +38,21 @@ std::vector<Mu> from_columns(const Matrix &columns) {
   for (const auto &column : columns.colwise())
     set.emplace_back(column.begin(), column.end());
   return set;
+}
+
+Outputs example_outputs(const ReducedModel &model,
+                        const std::function<Outputs(const Mu &)> &answer) {
+  std::vector<Mu> candidates = from_columns(model.made.trained_mu);
+  for (Mu &mu : parse_set(model.scene.parameters, "random:100:1"))
+    candidates.push_back(std::move(mu));
+  for (const Mu &mu : candidates) {
+    try {
+      return answer(mu);
+    } catch (const Error &) {
+      continue;
+    }
+  }
+  return {};
 }
 
 bool nearest_sample_failed(const ReducedModel &model, const Mu &free) {

@@ -35,9 +35,10 @@ struct Between {
   Index lowest, highest;
 };
 
-struct FieldWriter {
+/// File: H5Writer or ImageWriter.
+template <class File> struct WriterTo {
   static constexpr bool reads = false, checks = false;
-  H5Writer &file;
+  File &file;
   template <class T, class... Said>
   void operator()(const std::string &name, const T &value, Said...) const {
     file.write(name, value);
@@ -45,18 +46,22 @@ struct FieldWriter {
   template <class Holds> void ask(const std::string &, Holds &&) const {}
 };
 
-/// Throws bad_input, naming the data set, for one that is none of ours.
-struct FieldReader {
+/// File: H5Reader or ImageReader. Throws bad_input, naming the data set, for one that is none of
+/// ours.
+template <class File> struct ReaderOf {
   static constexpr bool reads = true, checks = false;
-  const H5Reader &file;
+  const File &file;
   template <class T, class... Said>
   void operator()(const std::string &name, T &value, Said...) const {
     using Numbers = std::vector<double>; // of which Mu is one
     using InFile = std::conditional_t<std::is_base_of_v<Numbers, T>, Numbers, T>;
-    static_cast<InFile &>(value) = file.read<InFile>(name);
+    static_cast<InFile &>(value) = file.template read<InFile>(name);
   }
   template <class Holds> void ask(const std::string &, Holds &&) const {}
 };
+
+using FieldWriter = WriterTo<H5Writer>;
+using FieldReader = ReaderOf<H5Reader>;
 
 /// A value that is stored as to(value), and read as from(stored).
 template <class Store, class T, class To, class From, class... Said>

@@ -70,11 +70,17 @@ public:
   /// At all dofs, without the motion of the scene, with the values that boundaries impose. Throws
   /// failure if the model was read without its fields.
   Vector field(const ReducedAnswer &solution) const;
+  /// An interface with its pressure, gap, normal and displacement (ContactInterface::fields), NaN
+  /// where the model has no displacement.
+  Grid contact_grid(const ReducedAnswer &solution, std::size_t interface) const;
   const ReducedModel &model() const { return model_; }
   const Scene &scene() const { return scene_; }
   const Contact &contact() const { return contact_; }
 
 private:
+  /// At the nodes of an interface, the values that boundaries impose among them. `columns`: at the
+  /// contact dofs.
+  Vector at_interface(const FullMu &mu, const Vector &columns, std::size_t interface) const;
   /// weights, nodal_b and nodal_gap.
   ContactOperators nodal_operators(const ReducedAnswer &solution, const Vector &lambda) const;
 

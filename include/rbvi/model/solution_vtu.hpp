@@ -17,6 +17,10 @@ std::vector<std::filesystem::path> contact_files(const std::filesystem::path &pa
                                                  const Scene &scene,
                                                  const std::string &suffix = "_contact");
 
+/// The bodies as write_vtu has them. Throws failure if the model was read without its fields.
+Grid body_grid(const Scene &scene, const FullMu &all_parameters, const ReducedModel &model,
+               const Vector &u);
+
 /// One solution, full or reduced: `u` at all dofs (the motion of the scene is added), `lambda` at
 /// the dual dofs, on the mesh of `model` mapped by h(mu) (its fields and interfaces alone are
 /// read). The displacement goes to `path`, with the number of the body on each cell

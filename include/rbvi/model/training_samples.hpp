@@ -4,9 +4,15 @@
 
 #include "rbvi/model/model.hpp"
 
+#include <functional>
 #include <vector>
 
 namespace rbvi {
+
+/// What outputs a model has: `answer` at the first of its training parameters, or of some random
+/// ones, where this throws no Error; none where it always does.
+Outputs example_outputs(const ReducedModel &model,
+                        const std::function<Outputs(const Mu &)> &answer);
 
 /// free parameters x samples, as ModelHistory::trained_mu; `rows`: number of free parameters.
 Matrix as_columns(const std::vector<Mu> &set, int rows);

@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""test_package.py MODELS BIN: the package rbvi (on PYTHONPATH) on the small runs."""
+
+import csv
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import rbvi
+
+MODELS, BIN = Path(sys.argv[1]), Path(sys.argv[2])
+
+
+class Answers(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.model = rbvi.Model(MODELS / "disk_condensed/model.h5")
+
+    def middle(self):
+        return {name: (one.lower + one.upper) / 2 for name, one in self.model.parameters.items()}
+
+    def test_digits_are_those_of_rbvi_online(self):
+        points = rbvi.Model(MODELS / "disk_condensed/model.h5")
+        rows = [[one.lower + t * (one.upper - one.lower) for one in points.parameters.values()]
+                for t in (0.1, 0.37, 0.9)]
+        with tempfile.TemporaryDirectory() as folder:
+            queries, out = Path(folder) / "mu.csv", Path(folder) / "out.csv"
+            queries.write_text(",".join(points.parameters) + "\n" + "\n".join(
+                ",".join(map(repr, row)) for row in rows) + "\n", encoding="utf-8")
+            subprocess.run([BIN / "rbvi-online", MODELS / "disk_condensed/model.h5", "--queries",
+                            queries, "--out", out, "--precision", "17"], check=True,
+                           capture_output=True)
+            with open(out, encoding="utf-8", newline="") as file:
+                told = list(csv.DictReader(file))
+        table = points.table(rows)
+        for k, row in enumerate(rows):
+            answer = points(**dict(zip(points.parameters, row)))
+            for name in points.outputs:
+                if told[k][name]:
+                    self.assertEqual(answer[name], float(told[k][name]), name)
+                    self.assertEqual(table[name][k], answer[name], name)
+
+    def test_an_answer_knows_its_errors(self):
+        answer = self.model(**self.middle())
+        self.assertTrue(answer.inside)
+        self.assertLess(answer.residual, 1e-8)
+        self.assertGreaterEqual(answer.error["normal_force"], 0)
+        self.assertTrue(np.isnan(answer.bound["normal_force"]))
+        self.assertIn("normal_force", repr(answer))
+
+    def test_left_out_parameters_keep_their_values(self):
+        name = next(iter(self.model.parameters))
+        self.assertEqual(self.model().mu[name], self.model.parameters[name].value)
+
+    def test_tables_of_each_kind(self):
+        middle = self.middle()
+        first = next(iter(middle))
+        columns = {first: [middle[first]] * 3, **{name: value for name, value in middle.items()
+                                                  if name != first}}
+        from_dict = self.model.table(columns)
+        from_array = self.model.table([list(middle.values())] * 3, threads=2)
+        self.assertTrue(from_dict.ok.all())
+        np.testing.assert_array_equal(from_dict["normal_force"], from_array["normal_force"])
+        outside = self.model.table({first: [1e9, middle[first]]})
+        self.assertEqual(list(outside.ok), [False, True])
+        self.assertIn(first, outside.status[0])
+        self.assertTrue(np.isnan(outside["normal_force"][0]))
+
+    def test_the_trace_carries_the_force(self):
+        answer = self.model(**self.middle())
+        trace = self.model.contact(**self.middle())
+        order = np.argsort(trace.points[:, 0])
+        x, pressure = trace.points[order, 0], trace["pressure"][order]
+        force = np.sum((pressure[1:] + pressure[:-1]) / 2 * np.diff(x))
+        self.assertAlmostEqual(force / answer["normal_force"], 1, delta=0.05)
+        self.assertEqual(len(trace.arc), len(trace.points))
+
+    def test_fields(self):
+        field = self.model.field(**self.middle())
+        self.assertEqual(len(field["u"]), len(field.points))
+        self.assertEqual(len(field["von_mises"]), len(field.cells))
+        self.assertEqual(field.units["von_mises"], "Pa")
+
+    def test_help_tells_parameters_and_outputs(self):
+        text = type(self.model).__doc__
+        for name in [*self.model.parameters, *self.model.outputs]:
+            self.assertIn(name, text)
+
+    def test_refusals(self):
+        for wrong in [lambda: self.model(radios=1), lambda: self.model(radius=1e9),
+                      lambda: self.model()["normal_forse"],
+                      lambda: self.model.table([[1, 2, 3, 4, 5]]),
+                      lambda: self.model.table({"radios": [1]}),
+                      lambda: self.model.contact("nowhere"), lambda: rbvi.check("nowhere.yaml")]:
+            with self.assertRaises(rbvi.RbviError) as caught:
+                wrong()
+            self.assertNotIn("\n", str(caught.exception))
+        with self.assertRaisesRegex(rbvi.BadInput, "'radius'"):
+            self.model(radios=1)
+        with self.assertRaises(FileNotFoundError):
+            rbvi.Model("nowhere.h5")
+
+    def test_threads_give_the_same_digits(self):
+        some = np.column_stack([np.linspace(one.lower, one.upper, 300)
+                                for one in self.model.parameters.values()])
+        one, two = (self.model.table(some, threads=threads) for threads in (1, 2))
+        for name in self.model.outputs:
+            np.testing.assert_array_equal(one[name], two[name])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
