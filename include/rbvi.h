@@ -77,6 +77,9 @@ RBVI_API size_t rbvi_parameter_count(const rbvi_model *model);
 RBVI_API size_t rbvi_output_count(const rbvi_model *model);
 RBVI_API rbvi_status rbvi_parameter_at(const rbvi_model *model, size_t i, rbvi_parameter *parameter);
 RBVI_API rbvi_status rbvi_output_at(const rbvi_model *model, size_t i, rbvi_output *output);
+/* What parameters have to meet together, one line each: "condition: why". */
+RBVI_API size_t rbvi_requirement_count(const rbvi_model *model);
+RBVI_API rbvi_status rbvi_requirement_at(const rbvi_model *model, size_t i, const char **text);
 /* The name of the scene. */
 RBVI_API rbvi_status rbvi_scene(const rbvi_model *model, const char **name);
 

@@ -16,7 +16,7 @@ static_assert(std::endian::native == std::endian::little, "images are little-end
 namespace {
 
 constexpr std::string_view image_magic = "rbvi-img";
-constexpr std::size_t header_size = 32, entry_size = 24;
+constexpr std::size_t header_size = 32;
 enum Type : std::uint32_t { doubles, integers, texts, one_double, one_integer, one_text };
 
 constexpr std::size_t filled(std::size_t size) {

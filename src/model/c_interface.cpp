@@ -205,6 +205,18 @@ size_t rbvi_contact_count(const rbvi_model *model) {
   return of ? of->contact_count() : 0;
 }
 
+size_t rbvi_requirement_count(const rbvi_model *model) {
+  const std::shared_ptr<const SharedModel> of = models().find(model);
+  return of ? of->requirements().size() : 0;
+}
+
+rbvi_status rbvi_requirement_at(const rbvi_model *model, size_t i, const char **text) {
+  return with_model(model, [&](const SharedModel &of) {
+    if (i >= of.requirements().size()) throw bad_input("the model has no such requirement");
+    there(text, "the text") = of.requirements()[i].c_str();
+  });
+}
+
 rbvi_status rbvi_parameter_at(const rbvi_model *model, size_t i, rbvi_parameter *parameter) {
   return with_model(model, [&](const SharedModel &of) {
     if (i >= static_cast<size_t>(of.model().scene.parameters.size()))

@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/model/solution_vtu.hpp"
 #include "rbvi/model/training_samples.hpp"
+#include "rbvi/scene/tree.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -40,6 +41,18 @@ SharedModel::SharedModel(std::vector<std::byte> image, std::string what)
       model_(model_in(image_, what_, library(), false)), columns_(columns_of_model(model_)) {
   for (std::size_t i = 0; i < model_.scene.contacts.size(); ++i)
     contacts_.push_back(rbvi::contact_name(model_.scene, i));
+  const CaseNode tree = tree_in(model_.scene.tree), nothing;
+  const auto entries = [&](const char *section) -> const std::vector<CaseNode::Entry> & {
+    const CaseNode *node = tree.find(section);
+    return node == nullptr ? nothing.entries : node->entries;
+  };
+  for (const auto &[name, node] : entries("parameters"))
+    if (const CaseNode *says = node.find("says")) says_[name] = says->value;
+  for (const auto &[name, node] : entries("require")) {
+    const CaseNode *that = node.find("that"), *says = node.find("says");
+    requirements_.push_back((that == nullptr ? name : that->value) +
+                            (says == nullptr ? "" : ": " + says->value));
+  }
   for (const OutputError &error : expected_errors(model_).outputs) {
     mean_errors_[error.name] = error.mean;
     largest_errors_[error.name] = error.max;
@@ -48,7 +61,9 @@ SharedModel::SharedModel(std::vector<std::byte> image, std::string what)
 
 rbvi_parameter SharedModel::parameter(std::size_t i) const {
   const Parameter &of = model_.scene.parameters.at(static_cast<int>(i));
-  return {of.name.c_str(), of.unit.c_str(), "", of.lower, of.upper, of.value};
+  const auto says = says_.find(of.name);
+  return {of.name.c_str(), of.unit.c_str(), says == says_.end() ? "" : says->second.c_str(),
+          of.lower,        of.upper,        of.value};
 }
 
 rbvi_output SharedModel::output(std::size_t i) const {

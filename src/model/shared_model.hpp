@@ -24,6 +24,8 @@ public:
   rbvi_output output(std::size_t i) const;
   const std::string &contact_name(std::size_t i) const { return contacts_.at(i); }
   std::size_t contact_count() const { return contacts_.size(); }
+  /// What parameters have to meet together: "that: says".
+  const std::vector<std::string> &requirements() const { return requirements_; }
   /// The model with its fields, read when they are first asked for. Throws failure where the image
   /// has none.
   const ReducedModel &with_fields() const;
@@ -33,7 +35,8 @@ private:
   const std::string what_;
   const ReducedModel model_; ///< without its fields
   std::vector<OutputColumn> columns_;
-  std::vector<std::string> contacts_;
+  std::vector<std::string> contacts_, requirements_;
+  std::map<std::string, std::string> says_; ///< of parameters, by their names
   ErrorOfOutput mean_errors_, largest_errors_;
   mutable std::once_flag fields_read_;
   mutable std::unique_ptr<const ReducedModel> with_fields_;

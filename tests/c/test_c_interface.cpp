@@ -1,7 +1,6 @@
 // The C interface against the C++ one, on a model of each kind: the same digits, whatever was asked
 // before, on however many threads; and what it refuses.
 #include "rbvi.h"
-#include "rbvi/contact/registry.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/model/model_image.hpp"
 #include "rbvi/model/online.hpp"
@@ -25,7 +24,7 @@ class CInterface : public testing::TestWithParam<const char *> {
 protected:
   void SetUp() override {
     const std::filesystem::path file = std::filesystem::path(RBVI_MODELS) / GetParam() / "model.h5";
-    model_ = read_model(file, registry_of({}));
+    model_ = read_model(file, Registry{});
     image_ = image_of(model_);
     ASSERT_EQ(rbvi_open_memory(image_.data(), image_.size(), &handle_), RBVI_OK) << rbvi_error();
     columns_ = rbvi_output_count(handle_);
@@ -159,7 +158,7 @@ class Refusals : public testing::Test {
 protected:
   void SetUp() override {
     const ReducedModel model =
-        read_model(std::filesystem::path(RBVI_MODELS) / "disk_none/model.h5", registry_of({}), false);
+        read_model(std::filesystem::path(RBVI_MODELS) / "disk_none/model.h5", Registry{}, false);
     image_ = image_of(model);
     ASSERT_EQ(rbvi_open_memory(image_.data(), image_.size(), &handle_), RBVI_OK);
     ASSERT_EQ(rbvi_workspace_new(handle_, &workspace_), RBVI_OK);
