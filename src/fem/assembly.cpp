@@ -1,9 +1,9 @@
 #include "rbvi/fem/assembly.hpp"
 
+#include "means.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/formula.hpp"
 #include "rbvi/element/facets.hpp"
-#include "rbvi/fem/means.hpp"
 #include "rbvi/par/collective.hpp"
 
 #include <algorithm>

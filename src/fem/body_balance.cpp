@@ -1,10 +1,10 @@
 #include "rbvi/fem/body_balance.hpp"
 
+#include "means.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/facets.hpp"
 #include "rbvi/fem/assembly.hpp"
-#include "rbvi/fem/means.hpp"
 #include "rbvi/par/collective.hpp"
 
 #include <algorithm>

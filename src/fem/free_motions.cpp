@@ -1,5 +1,6 @@
 #include "rbvi/fem/free_motions.hpp"
 
+#include "means.hpp"
 #include "motion_text.hpp"
 #include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
@@ -8,7 +9,6 @@
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/fem/imposed.hpp"
-#include "rbvi/fem/means.hpp"
 #include "rbvi/fem/rigid_body_modes.hpp"
 #include "rbvi/par/collective.hpp"
 

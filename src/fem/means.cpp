@@ -1,4 +1,4 @@
-#include "rbvi/fem/means.hpp"
+#include "means.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"

@@ -1,5 +1,6 @@
 #include "rbvi/fem/problem.hpp"
 
+#include "means.hpp"
 #include "rbvi/contact/history.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
@@ -8,7 +9,6 @@
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/fem/assembly.hpp"
 #include "rbvi/fem/check_scene.hpp"
-#include "rbvi/fem/means.hpp"
 #include "rbvi/method/balance.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/columns.hpp"

@@ -107,7 +107,7 @@ namespace {
 
 using Lengths = std::function<SpringState(const Vector &beta)>;
 
-/// None where the contact problem has no answer.
+/// The lengths; nothing where the contact problem has no answer.
 std::optional<SpringState> attempt(const Lengths &lengths, const Vector &beta) {
   try {
     return lengths(beta);
@@ -159,6 +159,10 @@ private:
   int rises_ = 0;
 };
 
+/// The balance from `beta` on by Anderson's acceleration of beta <- lengths(beta), or by Newton's
+/// steps where slopes are known. Where the excess hardly changes from solve to solve, the bodies
+/// fly apart: then beta grows along the excess, four times as far each time, until something
+/// touches or `flies` says that nothing does. Not converged: the least excess that was met.
 Balance accelerated(Vector beta, const Lengths &lengths) {
   constexpr int most_solves = 100, patience = 30; // without a smaller excess
   constexpr double tolerance = 1e-12, round_off = 1e-10, farthest = 1e10;
@@ -179,8 +183,8 @@ Balance accelerated(Vector beta, const Lengths &lengths) {
     result.excess = state.lengths - beta;
     const double size = result.excess.norm();
     const bool stalls = result.solves > 1 && size > 0.5 * before;
-    // Where nothing touches, the force of the springs moves by the same again and again. Where what
-    // touches is much softer than they are, it does nearly so: there acceleration is tried first.
+    // The excess stays as it is where nothing touches, and nearly so where what touches is much
+    // softer than the springs: there one accelerated step is tried first.
     const double change = last.size() > 0 ? (result.excess - last).norm() : size;
     const bool hardly = size > 0 && change <= weak * size;
     bool flies = hardly && !(step == 1 && change > constant * size && size < 0.5 * tried);
@@ -273,7 +277,7 @@ private:
     let_go_ = *excess / unit_;
     return true;
   }
-  /// None where the contact problem has no answer.
+  /// The lengths; nothing where the contact problem has no answer.
   std::optional<Vector> excess_at(const Vector &point) {
     ++found_.solves;
     found_.beta = first_ + unit_ * point.head(motions_);

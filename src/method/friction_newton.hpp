@@ -14,30 +14,32 @@
 
 namespace rbvi::friction {
 
-/// |x_tau,i| <= s_i(x_n,i). Entries of x: x_n of all nodes, then x_tau of all nodes.
+/// The laws of all nodes, |x_tau,i| <= s_i(x_n,i). The entries of x are x_n of all nodes, then
+/// x_tau of all nodes.
 struct Laws {
   Index nodes = 0;
   int dim = 2;
-  std::vector<FrictionBound> of; ///< every node
+  std::vector<FrictionBound> of; ///< the bound of each node
 
   Index tangent(Index i) const { return nodes + i * (dim - 1); }
   const FrictionBound &at_node(Index i) const { return of[i]; }
   double bound(Index i, double normal) const { return of[i].value(normal); }
   Vector bounds(const Vector &x) const;
-  bool jump() const;            ///< at some node
-  bool follow_pressure() const; ///< at some node
-  double steepest() const;      ///< of all nodes
+  bool jump() const;            ///< whether a bound jumps where contact begins
+  bool follow_pressure() const; ///< whether a bound does
+  double steepest() const;      ///< the largest slope of a bound
   /// The nearest x that keeps the signs, and then the bounds.
   Vector feasible(Vector x) const;
   /// Steps in which slopes grow from zero, by at most 0.25 each, to `steepest` of them all.
   static int steps_to(double steepest);
+  /// The laws with slopes, or thresholds, times a factor.
   Laws with_slopes(double part) const;
   Laws with_thresholds(double factor) const;
   /// The nodes whose bounds have jumped.
   std::vector<char> jumped(const Vector &x) const;
-  /// With the thresholds of those nodes alone, whatever touches.
+  /// The laws with the thresholds of those nodes alone, whatever touches.
   Laws without_jump(const std::vector<char> &jumped) const;
-  /// With bounds that do not follow the pressure.
+  /// The laws with these bounds, which do not follow the pressure.
   Laws frozen(const Vector &bounds) const;
 };
 
@@ -50,19 +52,19 @@ struct ActiveSets {
   std::vector<char> active;
   std::vector<Tangent> tangent;
   Matrix direction;        ///< e of the nodes that slip, dim - 1 x nodes
-  std::vector<char> piece; ///< of their laws
+  std::vector<char> piece; ///< the piece of its law that each of them is on
   Vector curvature;        ///< kappa of those nodes; negative: no turn
 
   ActiveSets(Index nodes, int dim);
   bool is_active(Index i) const { return active[i] != 0; }
   Tangent tangent_at(Index i) const { return tangent[i]; }
-  /// Of a node that slips.
+  /// The piece of the law that a slipping node is on.
   FrictionBound::Piece piece_of(const Laws &laws, Index i) const {
     return laws.at_node(i).piece(piece[i]);
   }
   /// The entries of x that need not be zero.
   std::vector<Index> support(const Laws &laws) const;
-  /// Equal for sets with the same linear system, in two dimensions.
+  /// A text that is equal for sets with the same linear system, in two dimensions.
   std::string key() const;
 };
 
@@ -83,9 +85,10 @@ struct Verdict {
 
 /// The largest x in the scaling in which H has a unit diagonal.
 double largest_scaled(const Vector &diagonal, const Vector &x);
-/// `diagonal`: H_jj, or its size; 0 where it is not known: of x_j it is then only known whether it
-/// is zero. `sets`: of the step that gave the point (they decide where the difference is below
-/// tolerance). `largest`: largest_scaled, of all nodes.
+/// The sets that a point predicts, and its violation. `diagonal`: H_jj, or its size; 0 where it is
+/// not known: of x_j it is then only known whether it is zero. `sets`: of the step that gave the
+/// point (they decide where the difference is below tolerance). `largest`: largest_scaled, of all
+/// nodes.
 Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, const ActiveSets &sets,
               double tolerance, double largest);
 Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, const ActiveSets &sets,
@@ -118,19 +121,19 @@ enum class Solved { yes, singular, indefinite };
 /// The linear system of active sets, factorised.
 class System {
 public:
-  /// The columns of the support of the sets are there.
+  /// The system of `sets`. `h` has the columns of their support.
   System(const LazyColumns &h, const Laws &laws, ActiveSets sets);
   /// The point that solves it; `point` is unchanged where none does.
   Solved step(const LazyColumns &h, const Vector &q, const Laws &laws, int refinements,
               State &point) const;
-  /// In the plane: changes of x by those of q (columns), while the sets stay.
+  /// Changes of x in the plane by those of q (columns), while the sets stay.
   Matrix change(const Laws &laws, const Matrix &of_q) const;
 
 private:
   void assemble(const LazyColumns &h, const Laws &laws);
   /// -(a y[first] + b y[second]) of each row, in its unit.
   Vector right_side(const Vector &y) const;
-  /// Of the unknowns.
+  /// The unknowns for a right side.
   Vector solve(const Vector &right, int refinements) const;
 
   ActiveSets sets_;

@@ -24,12 +24,12 @@ SampledLayer::SampledLayer(const LayerTerms &terms, const std::vector<CurveCell>
   const bool matrix = !terms.columns.empty();
   for (std::size_t k = 0; k < cells.size(); ++k) {
     const auto &dofs = cells[k].dofs;
-    const auto find = [&](int dof) {
+    const auto place_of = [&](int dof) { // 12: the cell does not have it
       return static_cast<int>(std::find(dofs.begin(), dofs.end(), dof) - dofs.begin());
     };
     bool touched = false;
     for (std::size_t e = 0; e < terms.rows.size(); ++e) {
-      const int row = find(terms.rows[e]), column = matrix ? find(terms.columns[e]) : 0;
+      const int row = place_of(terms.rows[e]), column = matrix ? place_of(terms.columns[e]) : 0;
       if (row == 12 || column == 12) continue;
       if (!touched) cells_.push_back(static_cast<int>(k));
       touched = true;

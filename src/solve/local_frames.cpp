@@ -1,4 +1,4 @@
-#include "rbvi/solve/local_frames.hpp"
+#include "local_frames.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/lagrange.hpp"

@@ -2,7 +2,7 @@
 // Niakh (2022): (4.27)-(4.32), (4.45)-(4.48), (4.56)-(4.59).
 #pragma once
 
-#include "rbvi/solve/local_frames.hpp"
+#include "local_frames.hpp"
 #include "rbvi/solve/nitsche.hpp"
 
 #include <exception>

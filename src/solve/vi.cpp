@@ -1,7 +1,7 @@
+#include "local_frames.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/petsc.hpp"
-#include "rbvi/solve/local_frames.hpp"
 #include "rbvi/solve/methods.hpp"
 #include "rbvi/solve/vectors.hpp"
 

@@ -1,5 +1,7 @@
 // rbvi bench: run time against error, on one rank, over the validation set.
 #include "rbvi/study/bench.hpp"
+#include "failures.hpp"
+#include "model_case.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/fem/check_scene.hpp"
@@ -8,10 +10,8 @@
 #include "rbvi/model/training_samples.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/tool/commands.hpp"
-#include "rbvi/tool/failures.hpp"
-#include "rbvi/tool/model_case.hpp"
-#include "rbvi/tool/run_directory.hpp"
 #include "rbvi/tool/tables.hpp"
+#include "run_directory.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -159,8 +159,8 @@ void bench(const MeasureOptions &options, const ReducedModel &model, int ranks) 
        << "outputs_max: energy, forces and pressures, relative to the range of each.\n"
        << "speed_up: against the first row, which has outputs and field; coefficients alone are no "
           "answer;\n"
-       << "benefit_from: queries from which "
-       << formatted("%.2f", offline) << " s offline are won back\n"
+       << "benefit_from: queries from which " << formatted("%.2f", offline)
+       << " s offline are won back\n"
        << "(" << snapshots.size() << " snapshots by their solve times, plus the other stages).\n\n";
   const std::string table = head.str() + markdown(rows, best);
   sweep_up(options.out);

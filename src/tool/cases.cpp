@@ -5,7 +5,7 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/tool/case_file.hpp"
-#include "rbvi/tool/run_directory.hpp"
+#include "run_directory.hpp"
 #include "table.hpp"
 
 #include <algorithm>

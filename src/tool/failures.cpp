@@ -1,4 +1,4 @@
-#include "rbvi/tool/failures.hpp"
+#include "failures.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"

@@ -1,4 +1,4 @@
-#include "rbvi/tool/model_case.hpp"
+#include "model_case.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"

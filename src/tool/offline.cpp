@@ -1,4 +1,5 @@
 // rbvi offline: from a case file to a model file.
+#include "failures.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
@@ -15,11 +16,10 @@
 #include "rbvi/solve/contact_cost.hpp"
 #include "rbvi/sweep/grouping.hpp"
 #include "rbvi/tool/commands.hpp"
-#include "rbvi/tool/failures.hpp"
 #include "rbvi/tool/offline_run.hpp"
-#include "rbvi/tool/run_directory.hpp"
 #include "rbvi/tool/tables.hpp"
 #include "rbvi/tool/workspace.hpp"
+#include "run_directory.hpp"
 
 #include <cstdio>
 #include <iostream>

@@ -10,7 +10,7 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/tool/case_file.hpp"
 #include "rbvi/tool/cases.hpp"
-#include "rbvi/tool/run_directory.hpp"
+#include "run_directory.hpp"
 #include "table.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "rbvi/tool/run_directory.hpp"
+#include "run_directory.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"

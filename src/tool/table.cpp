@@ -4,7 +4,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/reduction.hpp"
 #include "rbvi/solve/methods.hpp"
-#include "rbvi/tool/run_directory.hpp"
+#include "run_directory.hpp"
 
 #include <algorithm>
 

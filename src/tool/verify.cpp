@@ -1,5 +1,7 @@
 // rbvi verify: a finished model against high-fidelity solves over the validation set.
 #include "verify.hpp"
+#include "failures.hpp"
+#include "model_case.hpp"
 #include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
@@ -19,11 +21,9 @@
 #include "rbvi/study/separation_errors.hpp"
 #include "rbvi/sweep/grouping.hpp"
 #include "rbvi/tool/commands.hpp"
-#include "rbvi/tool/failures.hpp"
-#include "rbvi/tool/model_case.hpp"
-#include "rbvi/tool/run_directory.hpp"
 #include "rbvi/tool/tables.hpp"
 #include "rbvi/tool/workspace.hpp"
+#include "run_directory.hpp"
 
 #include <algorithm>
 #include <cstdio>

@@ -35,7 +35,7 @@ struct Dofs {
   /// Natural numbers of the dofs that have no row of their own, and of those whose row they share;
   /// on every rank.
   std::map<PetscInt, PetscInt> tied;
-  std::vector<Coupling> couplings; ///< see fem/means.hpp
+  std::vector<Coupling> couplings; ///< see src/fem/means.hpp
 
   /// The natural number of the row of a dof, of a local node and a component.
   PetscInt natural(const Mesh &mesh, std::size_t node, int component) const {

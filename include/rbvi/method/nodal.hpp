@@ -19,8 +19,8 @@
 
 namespace rbvi {
 
-/// At a state s, with multipliers x. Rows of x and w: normal ones of all nodes, then (friction)
-/// tangential ones.
+/// The condition of contact at a state s, with multipliers x. Rows of x and w: normal ones of all
+/// nodes, then (friction) tangential ones.
 struct NodalCondition {
   Vector w;                ///< g(s) - B(s) s
   Vector load;             ///< B(s)^T x, at the contact dofs
@@ -28,21 +28,21 @@ struct NodalCondition {
   Vector rotation; ///< per node, int eta x k: k times a tangential displacement turns the normal
 };
 
-/// Evaluates it at the nodes of `near` (empty: all of them), which have to include those that
-/// carry: nothing else is told of the others, and the state is not asked for beside their
-/// functions.
+/// An evaluation of the condition at the nodes of `near` (empty: all of them), among which are all
+/// with a multiplier: of other nodes nothing is told, and the state is asked for on the functions
+/// of these nodes alone.
 using NodalEvaluation =
     std::function<void(const Vector &state, const Vector &x, const std::vector<bool> &near,
                        NodalCondition &condition)>;
 
-/// A C A^T and C A^T, the columns of a node when it is required; for problems of one C.
+/// The products A C A^T and C A^T of one C; the columns of a node are made when it is required.
 class NodalCompliance {
 public:
   /// `average`: A, rows 2 node + component, columns the contact dofs.
   explicit NodalCompliance(SparseMatrix average);
-  /// C is another one.
+  /// Drops all columns: C is another one.
   void forget() { known_.assign(known_.size(), false); }
-  /// Collective where `compliance` is.
+  /// Makes the columns of these nodes. Collective where `compliance` is.
   void require(const std::vector<Index> &nodes, Compliance &compliance);
 
   const SparseMatrix &average() const { return average_; }

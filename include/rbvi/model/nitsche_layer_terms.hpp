@@ -9,22 +9,23 @@ namespace rbvi {
 /// Reference abscissa of each Gauss point of the curve: 4 * cells.
 Vector point_abscissae(const std::vector<CurveCell> &cells);
 
-/// Where the sampled entries of one operator come from.
+/// The sampled entries of one operator, with the cells that they come from.
 class SampledLayer {
 public:
   /// `terms` must outlive it.
   SampledLayer(const LayerTerms &terms, const std::vector<CurveCell> &cells);
-  /// The cells that touch them, by number: whose faces the next two are given.
+  /// The numbers of the cells that touch the entries: the next two are given the faces of these.
   const std::vector<int> &cells() const { return cells_; }
-  /// theta: J numbers, from the operator on these cells.
+  /// The J coefficients theta, from the operator on these cells.
   Vector of_blocks(const std::vector<FaceBlock> &blocks) const;
-  /// From a vector on the whole layer to which these cells have contributed.
+  /// The J coefficients, from a vector on the whole layer to which these cells have contributed.
   Vector of_vector(const Vector &layer) const;
 
 private:
   struct Contribution {
     int entry, cell, row, column;
   };
+  /// The J coefficients of J sampled entries.
   Vector coefficients(Vector entries) const;
   const LayerTerms &terms_;
   std::vector<int> cells_;

@@ -8,8 +8,9 @@
 
 namespace rbvi {
 
-/// Of append_answered_responses in reduce(). Multipliers do not depend on it, and u is then known
-/// to 1e-5 (cases/two_disks/README.md): a mesh so large that it matters is not finer than that.
+/// The tolerance of append_answered_responses in reduce(). Multipliers do not depend on it, and u
+/// is then known to 1e-5 (cases/two_disks/README.md): a mesh so large that it matters is not finer
+/// than that.
 inline constexpr double answered_tolerance = 1e-5;
 
 /// Whether only the responses to answers join the modes: where the fields of all, one by one, have
@@ -40,15 +41,15 @@ private:
   double largest_ = 0;
 };
 
-/// Appends responses to the modes, for what `model` answers at the training parameters and at
-/// random ones: a hundred at a time, until another hundred are there to the tolerance. `model`:
-/// with the condensed operator of `loads` and any modes. Returns how many. Collective. Throws
-/// failure where the law has no answer at any mu, or always new ones.
+/// Appends the responses to what `model` answers at the training parameters and at random ones: a
+/// hundred answers at a time, until another hundred have theirs in the modes to the tolerance.
+/// `model`: with the condensed operator of `loads` and any modes. Returns how many. Collective.
+/// Throws failure where the law has no answer at any mu, or always new ones.
 int append_answered_responses(Problem &problem, const CondensedLoads &loads,
                               const ReducedModel &model, double tolerance, LinearBasis &modes);
 
-/// Of answered_displacements, in V and relative to each answer, but for very small ones: what is
-/// wanted of u. Disk with two materials, against full solves: 2.7e-7 (with all responses 1.4e-7),
+/// The tolerance of answered_displacements: the error of u in V, relative to each answer but very
+/// small ones. Disk with two materials, against full solves: 2.7e-7 (with all responses 1.4e-7),
 /// at corners 3.9e-7 with both.
 inline constexpr double displacement_tolerance = 1e-6;
 

@@ -11,17 +11,18 @@
 
 namespace rbvi {
 
-/// Of the responses to the loads: the gap that they leave is what the multipliers answer to.
+/// The tolerance of the responses to the loads of the scene: the gap that they leave is what the
+/// multipliers answer to.
 inline constexpr double load_tolerance = 1e-9;
 
 struct CondensedOptions {
   double tolerance = 1e-9; ///< of the interpolation, relative
   int max_points = 33;     ///< along one parameter
-  double responses = 3e-3; ///< of those of further A: see condense; 0: none are appended
-  /// Of columns_near_contact. The training samples only have to say roughly where contact is: where
-  /// a query of the self-check finds it at the edge, reduce() keeps all columns.
+  double responses = 3e-3; ///< tolerance of responses of further A (condense); 0: none are appended
+  /// The ring of columns_near_contact. The training samples only have to say roughly where contact
+  /// is: where a query of the self-check finds it at the edge, reduce() keeps all columns.
   double ring = 0.5;
-  double large_fields = 2e7; ///< numbers: 160 MB
+  double large_fields = 2e7; ///< numbers of fields that are many: 160 MB
 };
 
 /// Appends to the modes the responses of the body to the terms of F, which the condensed operator
@@ -36,14 +37,14 @@ struct Condensation {
   int factorisations = 0; ///< of A
 };
 
-/// What A^-1 is asked for on the contact dofs.
+/// The loads on the contact dofs that A^-1 is asked for.
 struct CondensedLoads {
   Matrix columns; ///< contact dofs x any number
-  Index size;     ///< of a block of H: so many of them
-  /// The contact dofs that they are the unit loads of, rising; empty: they are no unit loads.
+  Index size;     ///< the order of a block of H
+  /// The contact dofs of unit loads, rising; empty: the loads are others.
   std::vector<int> units{};
   bool join = false; ///< the responses to all of them can join the modes
-  /// Contact dofs the responses to whose unit loads can join the modes instead: those beside
+  /// The contact dofs whose unit loads have responses that can join the modes instead: those beside
   /// multipliers that are positive in some sample.
   std::vector<Index> dofs{};
 
@@ -51,12 +52,13 @@ struct CondensedLoads {
   Index joining() const { return join ? columns.cols() : std::ssize(dofs); }
 };
 
-/// Where b separates (`affine`, over the samples at `training`): its terms on the basis, side by
-/// side; all of them join where there is one term, single dofs where it is an exact sum of more:
-/// where it is interpolated no response makes the displacement more exact. Where b is evaluated at
-/// each mu: the unit vectors of the contact dofs that the rows of the basis and their neighbours
-/// meet at the training parameters, at random ones and in the corners of the box; of all contact
-/// dofs where contact follows the displacement. `multipliers`: dual dofs x P. Not collective.
+/// The loads of a basis of the multipliers. Where b separates (`affine`, over the samples at
+/// `training`) these are its terms on the basis, side by side; all of them join where there is one
+/// term, single dofs where it is an exact sum of more: where it is interpolated no response makes
+/// the displacement more exact. Where b is evaluated at each mu these are the unit vectors of the
+/// contact dofs that the rows of the basis and their neighbours meet at the training parameters, at
+/// random ones and in the corners of the box; of all contact dofs where contact follows the
+/// displacement. `multipliers`: dual dofs x P. Not collective.
 CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
                                const std::vector<Mu> &training, const Matrix &multipliers,
                                const Matrix &basis);

@@ -1,6 +1,6 @@
 // Nitsche's method on operators of the curve that are interpolated over (mu, Newton step). There is
-// no energy: (4.79) and (4.80) as printed, from neighbouring samples; where it does not converge, the
-// derivative of its vectors, with halved steps. Niakh (2022): (4.26), (4.79), (4.80).
+// no energy: (4.79) and (4.80) as printed, from neighbouring samples; where it does not converge,
+// the derivative of its vectors, with halved steps. Niakh (2022): (4.26), (4.79), (4.80).
 #include "../nitsche_system.hpp"
 #include "queries.hpp"
 #include "rbvi/core/error.hpp"
@@ -32,7 +32,7 @@ std::vector<CurveCell> touched(const NitscheModel &model, const std::vector<Curv
   return selected(all, numbers);
 }
 
-/// Of one model.
+/// The method on the operators of one model.
 class PrintedNewton : public InterpolatedCurve {
 public:
   /// Both must outlive it.
@@ -62,7 +62,9 @@ private:
   Part part(const LayerTerms &matrix, const LayerTerms &vector) const {
     return {matrix, vector, {matrix, cells_}, {vector, cells_}};
   }
-  Matrix slope(const AtMu &at, const Vector &u, bool printed) const;
+  /// The matrix of a step: that of (4.79), which is interpolated by itself, or the derivative of
+  /// the interpolated vectors, but for bounds that move.
+  Matrix slope(const AtMu &at, const Vector &u, bool own_matrix) const;
   Matrix times_trace(const std::vector<FaceBlock> &blocks) const;
 
   const Matrix &trace_; ///< contact dofs x n: the primal basis
@@ -89,23 +91,21 @@ PrintedNewton::Terms PrintedNewton::terms(const AtMu &at, const Vector &u) const
   return {au + sum - at.f, au.norm() + sum.norm() + at.f.norm()};
 }
 
-/// The interpolated matrix, as printed, or the derivative of the interpolated vectors, but for
-/// bounds that move.
-Matrix PrintedNewton::slope(const AtMu &at, const Vector &u, bool printed) const {
+Matrix PrintedNewton::slope(const AtMu &at, const Vector &u, bool own_matrix) const {
   const Matrix pressures = nitsche_pressures(at.faces, trace_ * u);
   const Vector bounds = nitsche_bounds(at.faces, pressures);
   std::array<std::vector<FaceBlock>, 2> blocks{nitsche_tangent(at.faces, pressures, {}), {}};
   if (bounds.size() > 0) blocks[1] = nitsche_tangent(at.faces, pressures, bounds);
-  const bool joint = printed && parts_[0].matrix.size() == 0;
+  const bool joint = own_matrix && parts_[0].matrix.size() == 0;
   for (std::size_t k = 0; k < blocks[1].size() && !joint; ++k)
     blocks[1][k] -= blocks[0][k];
   Matrix result = at.a_gamma;
   for (std::size_t k = 0; k < 2; ++k) {
     const Part &one = parts_[k];
-    if (printed && one.matrix.size() > 0) {
+    if (own_matrix && one.matrix.size() > 0) {
       const std::vector<FaceBlock> sampled = selected(blocks[k], one.at_matrix.cells());
       result += unpacked(one.matrix.reduced * one.at_matrix.of_blocks(sampled), u.size());
-    } else if (!printed && one.vector.size() > 0) {
+    } else if (!own_matrix && one.vector.size() > 0) {
       const Matrix on_dofs = times_trace(blocks[k]);
       Matrix theta(one.vector.size(), u.size());
       for (Index j = 0; j < u.size(); ++j)
@@ -132,18 +132,18 @@ InterpolatedAnswer PrintedNewton::solve(const FullMu &all_parameters, const Vect
   const AtMu at{nitsche_faces(layer_, all_parameters, cells_), a_gamma, f};
   InterpolatedAnswer found{{}, 0, 0};
   const bool alone = near.size() == 0;
-  for (const bool printed : {true, false}) {
-    if (alone && !printed) break;
+  for (const bool own_matrix : {true, false}) {
+    if (alone && !own_matrix) break;
     found.u = alone ? Vector(Vector::Zero(trace_.cols())) : near;
     Terms here = terms(at, found.u);
-    const int most_steps = alone ? most_alone : printed ? most_printed_steps : most_halved_steps;
+    const int most_steps = alone ? most_alone : own_matrix ? most_printed_steps : most_halved_steps;
     for (int step = 1; step <= most_steps; ++step) {
       ++found.iterations;
-      const Vector d = -lu_solve(slope(at, found.u, printed), here.residual);
+      const Vector d = -lu_solve(slope(at, found.u, own_matrix), here.residual);
       if (!d.allFinite()) break;
       double t = 1;
       Terms next = terms(at, found.u + d);
-      while (!printed && !(next.residual.norm() < here.residual.norm()) && t > smallest_step) {
+      while (!own_matrix && !(next.residual.norm() < here.residual.norm()) && t > smallest_step) {
         t /= 2;
         next = terms(at, found.u + t * d);
       }

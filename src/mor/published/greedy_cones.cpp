@@ -1,6 +1,7 @@
 // Niakh (2022): (2.33), (2.34), (B.13)-(B.26).
 #include "rbvi/mor/published/greedy_cones.hpp"
 
+#include "greedy_cone.hpp"
 #include "rbvi/core/error.hpp"
 #include "reductions.hpp"
 

@@ -1,3 +1,4 @@
+#include "greedy_cone.hpp"
 #include "reductions.hpp"
 
 #include "rbvi/core/error.hpp"

@@ -1,7 +1,7 @@
 // The published reductions, which reductions.cpp enters in their lists.
 #pragma once
 
-#include "greedy_cone.hpp"
+#include "rbvi/mor/cones.hpp"
 #include "rbvi/mor/nitsche_quadrature.hpp"
 #include "rbvi/mor/reduction.hpp"
 
