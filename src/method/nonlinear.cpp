@@ -234,7 +234,7 @@ void finish(const NonlinearContact &contact, const NodalCondition *nodal, Iterat
 
 } // namespace
 
-NonlinearResult solve_nonlinear(const NonlinearContact &contact, const NonlinearStart &start,
+NonlinearResult solve_nonlinear(const NonlinearContact &contact, const Start &start,
                                 const NonlinearOptions &options) {
   NonlinearResult result;
   Iteration iteration(contact, options);

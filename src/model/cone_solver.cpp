@@ -212,15 +212,15 @@ std::vector<Index> ConeSolver::known_active(Index sample) const {
 
 void ConeSolver::start(const FullMu &mu) {
   const bool y_stays = model_.body.a.size() == 1 && model_.contact.b.size() == 1;
-  const Start &start = starts_.nearest(parts_of_box(scene_.parameters, mu), [&](Index sample) {
+  const ConeStart &start = starts_.nearest_from(mu, [&](Index sample) {
     const std::vector<Index> active = known_active(sample);
-    if (!active.empty() && !y_stays) return Start{active, {}, y_number_};
+    if (!active.empty() && !y_stays) return ConeStart{active, {}, y_number_};
     const Vector there = model_.made.trained_mu.col(sample);
     ReducedAnswer unused;
     unused.mu = expand(scene_.parameters, {there.begin(), there.end()});
     qp_.start_from(active);
     solve_from_start(unused);
-    Start found{qp_.active(), {}, y_number_};
+    ConeStart found{qp_.active(), {}, y_number_};
     if (y_stays) found.qp = qp_;
     return found;
   });

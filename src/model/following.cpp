@@ -25,12 +25,12 @@ double distance_from_rest(const NonlinearContact &problem, const NonlinearResult
 FollowingSolver::FollowingSolver(const ReducedModel &model, const Scene &scene,
                                  const Contact &contact, const QueryOptions &options, bool by_rule)
     : model_(model), scene_(scene), contact_(contact), by_rule_(by_rule),
-      looks_for_others_(options.looks_for_others || by_rule), warm_(options.warm),
+      looks_for_others_(options.looks_for_others || by_rule),
       columns_(laws_of_columns(contact, model.contact.dual_basis)), body_(model, scene),
       at_mu_(body_), evaluated_(model, scene, contact, body_),
       rows_are_identity_(model.contact.dual_basis.isIdentity(0)),
       w_product_(evaluated_.rows() * contact.w_product() * evaluated_.rows().transpose()),
-      starts_(model, scene, options.warm) {
+      starts_(scene.parameters, model.contact.law->starts_mu, options.warm) {
   if (options.method == OnlineMethod::kacanov) steps_.method = NonlinearMethod::kacanov;
   const ContactInterface *nodal = nodal_interface(contact);
   if (nodal != nullptr && rows_are_identity_) nodal_.emplace(nodal->averages());
@@ -38,14 +38,14 @@ FollowingSolver::FollowingSolver(const ReducedModel &model, const Scene &scene,
 
 /// From what the samples predict, or the last query where that is asked for; else, and where there
 /// are several answers, from the undeformed body.
-NonlinearStart FollowingSolver::start(const FullMu &mu) const {
-  NonlinearStart start{{}, by_rule_ ? Vector() : starts_.at(mu)};
-  if (start.x.size() == 0)
-    start.state = undeformed(contact_, scene_, mu);
-  else if (last_state_.size() > 0)
-    start.state = last_state_;
-  else
-    start.state = starts_.predicted(model_.contact.law->states, mu);
+Start FollowingSolver::start(const FullMu &mu) const {
+  const NodalLaw &law = *model_.contact.law;
+  Start start;
+  if (!by_rule_)
+    start = starts_.at([&] {
+      return Start{starts_.fit(law.states, mu), starts_.fit(law.starts, mu)};
+    });
+  if (start.x.size() == 0) start.state = undeformed(contact_, scene_, mu);
   return start;
 }
 
@@ -100,8 +100,7 @@ ReducedAnswer FollowingSolver::solve(const FullMu &mu, Relaxed relaxed) {
   answer.contraction = found.rate;
   answer.lambda = std::move(found.x);
   answer.start = std::move(found.start);
-  starts_.keep(answer.start);
-  if (warm_) last_state_ = std::move(found.state);
+  starts_.keep({std::move(found.state), answer.start});
   return answer;
 }
 

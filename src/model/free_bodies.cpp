@@ -1,8 +1,8 @@
 #include "rbvi/model/free_bodies.hpp"
 
-#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/method/balance.hpp"
+#include "rbvi/method/starts.hpp"
 #include "rbvi/model/law_solver.hpp"
 
 #include <algorithm>
@@ -32,8 +32,7 @@ Vector start_of(const ReducedModel &model, const Scene &scene, const FullMu &mu)
   if (rests_at_start(model, scene)) return Vector::Zero(of_samples.rows());
   if (at.cols() != of_samples.cols()) // before the model is complete
     return of_samples.rowwise().mean();
-  return local_fit(of_samples, parts_of_box(scene.parameters, at),
-                   parts_of_box(scene.parameters, mu));
+  return Neighbours(scene.parameters, at).fit(of_samples, mu);
 }
 
 } // namespace

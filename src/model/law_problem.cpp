@@ -1,6 +1,5 @@
 #include "rbvi/model/law_problem.hpp"
 
-#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/model/free_bodies.hpp"
 
@@ -95,24 +94,6 @@ void LawProblem::displace(ReducedAnswer &answer) const {
                     std::string(keeps_more));
   contact_->move(at_mu_, answer);
   if (law_.unloaded.size() > 0) answer.u += law_.unloaded;
-}
-
-LawStarts::LawStarts(const ReducedModel &model, const Scene &scene, bool warm)
-    : model_(model), scene_(scene), warm_(warm),
-      samples_(parts_of_box(scene.parameters, model.contact.law->starts_mu)) {}
-
-Vector LawStarts::predicted(const Matrix &of_samples, const FullMu &mu) const {
-  return local_fit(of_samples, samples_, parts_of_box(scene_.parameters, mu));
-}
-
-Vector LawStarts::at(const FullMu &mu) const {
-  if (last_.size() > 0) return last_;
-  if (samples_.cols() == 0) return {};
-  return predicted(model_.contact.law->starts, mu);
-}
-
-void LawStarts::keep(const Vector &start) {
-  if (warm_) last_ = start;
 }
 
 } // namespace rbvi

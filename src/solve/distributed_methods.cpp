@@ -42,7 +42,7 @@ public:
     if (complaint.empty()) return result;
     if (options_.contact == HfContact::eliminated) throw failure(complaint);
     const Operators &op = problem_.assemble(task.mu, otherwise_->begin(task.slip), task.slip);
-    result = otherwise_->solve({task.mu, op, task.slip, task.solved, task.near, task.continues});
+    result = otherwise_->solve({task.mu, op, task.slip, task.starts, task.near, task.continues});
     result.reason += ", condensed because elimination failed: " + complaint;
     return result;
   }
@@ -55,8 +55,8 @@ private:
   MethodResult eliminated(const ContactTask &task, std::string &complaint) {
     try {
       MethodResult result =
-          grids_.solve(task.mu, task.op, task.near == nullptr ? Vector() : task.near->start, 1e-13,
-                       !task.continues);
+          grids_.solve(task.mu, task.op, task.near == nullptr ? Vector() : task.near->start.x,
+                       1e-13, !task.continues);
       if (!result.converged) {
         complaint = result.reason;
         return result;

@@ -4,7 +4,7 @@
 namespace rbvi {
 
 FollowingResult solve_following(FactoredBody &body, const Problem &problem, Operators &op,
-                                const Vector &slip, const NonlinearStart &start,
+                                const Vector &slip, const Start &start,
                                 const NonlinearOptions &options) {
   const Contact &contact = problem.contact();
   NonlinearContact nonlinear{.compliance = body,

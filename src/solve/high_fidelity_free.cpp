@@ -34,10 +34,9 @@ Matrix unresisted_motions(const Problem &problem, const Operators &op) {
 }
 
 MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, ContactRows rows,
-                                    const Vector &slip) {
+                                    const Vector &slip, const Solved *near) {
   const std::vector<FreeBody> &bodies = problem_.free_bodies();
   const int dim = problem_.scene().dim;
-  const Solved *near = nearest(mu);
   Operators all;
   collectively(problem_.comm(), [&] { problem_.assemble_contact(mu, all); });
   // Of several answers with friction that from rest is taken, whatever was solved before.
@@ -59,7 +58,7 @@ MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, ContactRo
     problem_.relax_springs(beta);
     result = run(mu, op, slip, last ? &*last : near, last.has_value());
     iterations += result.iterations;
-    last = method_->kept(mu, result);
+    last = method_->kept(result);
     const Vector forces = forces_on_motions(all.laws, held, terms, result.lambda);
     return SpringState{spring_lengths(bodies, result.free_u.get()), forces.maxCoeff() / stiffness};
   });

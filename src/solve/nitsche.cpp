@@ -3,7 +3,6 @@
 #include "contact_method.hpp"
 #include "nitsche_system.hpp"
 #include "rbvi/contact/force_balance.hpp"
-#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/solve/vectors.hpp"
@@ -32,34 +31,23 @@ public:
   }
   void set(const Operators &) override {}
   MethodResult solve(const ContactTask &task) override;
-  Solved kept(const Mu &mu, MethodResult &result) const override {
-    return {.mu = mu, .u = std::move(result.free_u), .pressures = std::move(result.pressures)};
+  Solved kept(MethodResult &result) const override {
+    return {.u = std::move(result.free_u), .pressures = std::move(result.pressures)};
   }
 
 private:
-  Matrix predicted_pressures(const ContactTask &task) const;
-
   Problem &problem_;
   NitscheSolver solver_;
 };
 
-Matrix ByNitsche::predicted_pressures(const ContactTask &task) const {
-  const ParameterSpace &space = problem_.scene().parameters;
-  const auto count = std::ssize(task.solved);
-  Matrix pressures(task.solved.front().pressures.size(), count), points(space.size(), count);
-  for (Index p = 0; p < count; ++p) {
-    const Solved &solved = task.solved[p];
-    pressures.col(p) = solved.pressures.reshaped();
-    points.col(p) = parts_of_box(space, expand(space, solved.mu));
-  }
-  return local_fit(pressures, points, parts_of_box(space, expand(space, task.mu)))
-      .reshaped(pressures.rows() / 2, 2);
-}
-
 MethodResult ByNitsche::solve(const ContactTask &task) {
   const Operators &op = task.op;
   NitscheStart start{};
-  if (task.near != nullptr) start = {task.near->u.get(), predicted_pressures(task)};
+  if (task.near != nullptr) {
+    const Vector pressures = task.starts.fit_added(
+        [](const Solved &solved) { return Vector(solved.pressures.reshaped()); }, op.mu);
+    start = {task.near->u.get(), pressures.reshaped(pressures.size() / 2, 2)};
+  }
   NitscheSolution found = solver_.solve(op, task.near == nullptr ? nullptr : &start);
   const NitscheLayer layer = layer_of(problem_.contact());
   MethodResult result;

@@ -12,6 +12,7 @@
 
 #include "rbvi/method/friction.hpp"
 #include "rbvi/method/nodal.hpp"
+#include "rbvi/method/starts.hpp"
 
 #include <functional>
 
@@ -71,11 +72,6 @@ struct NonlinearOptions {
   bool economical = false;
 };
 
-struct NonlinearStart {
-  Vector state; ///< at the contact dofs
-  Vector x;     ///< as NonlinearResult::start; empty: none is known
-};
-
 struct NonlinearResult {
   Vector x;
   Vector start;    ///< x - w / H_jj (FrictionResult::start)
@@ -101,7 +97,7 @@ struct NonlinearResult {
 /// Where steps from `start` fail, once more from the undeformed body in load steps: a part of the
 /// motion and of the loads after the other. Never throws for a condition or a law that fails;
 /// throws bad_input for a method that this contact has not.
-NonlinearResult solve_nonlinear(const NonlinearContact &contact, const NonlinearStart &start,
+NonlinearResult solve_nonlinear(const NonlinearContact &contact, const Start &start,
                                 const NonlinearOptions &options = {});
 
 } // namespace rbvi

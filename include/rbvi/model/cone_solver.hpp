@@ -10,11 +10,18 @@
 #pragma once
 
 #include "rbvi/method/mixed_qp.hpp"
+#include "rbvi/method/starts.hpp"
 #include "rbvi/model/answer.hpp"
 #include "rbvi/model/reduced_body.hpp"
-#include "rbvi/model/sample_starts.hpp"
 
 namespace rbvi {
+
+/// Where a query starts.
+struct ConeStart {
+  std::vector<Index> active;
+  std::optional<MixedQp> qp{}; ///< with its factorisation, of Y number y_number
+  int y_number = 0;
+};
 
 class ConeSolver : public QueryMethod {
 public:
@@ -54,12 +61,7 @@ private:
 
   // What a query changes.
   Vector beta_; ///< Relaxed::beta
-  struct Start {
-    std::vector<Index> active;
-    std::optional<MixedQp> qp; ///< with its factorisation, of Y number y_number
-    int y_number = 0;
-  };
-  SampleStarts<Start> starts_;
+  Starts<ConeStart> starts_;
   BodyAtMu at_mu_;
   MixedQp qp_;
   int y_number_ = 0; ///< Y so far

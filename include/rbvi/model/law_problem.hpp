@@ -65,26 +65,6 @@ private:
   Matrix springs_, motions_;
 };
 
-/// Where queries start: from what the training samples around mu predict (core/box.hpp), or
-/// the last answer where that is asked for.
-class LawStarts {
-public:
-  /// Both must outlive it.
-  LawStarts(const ReducedModel &model, const Scene &scene, bool warm);
-  /// FrictionResult::start; empty: from rest.
-  Vector at(const FullMu &mu) const;
-  /// What a column of values for each sample predicts at mu.
-  Vector predicted(const Matrix &of_samples, const FullMu &mu) const;
-  void keep(const Vector &start);
-
-private:
-  const ReducedModel &model_;
-  const Scene &scene_;
-  const bool warm_;
-  const Matrix samples_; ///< where the starts are, as parts of the box
-  Vector last_;
-};
-
 /// The functions in coefficients of the nodal dual basis: m x (R + S).
 Matrix multiplier_coefficients(const MultiplierBasis &basis);
 
