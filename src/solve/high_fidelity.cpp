@@ -133,7 +133,7 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
   method_->set(op);
   const Solved *near = solved_->nearest_added(op.mu);
   MethodResult result = problem_.free_bodies().empty() ? run(mu, op, slip, near, false)
-                                                       : run_free(mu, op, rows, slip, near);
+                                                       : run_free(mu, op, slip, near);
   tell(result, result.outputs);
   result.u = whole_displacement(problem_, mu, result.free_u.get());
   add_named_outputs(problem_, op.mu, result.u, result.lambda, result.outputs);

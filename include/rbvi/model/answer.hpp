@@ -3,21 +3,13 @@
 
 #include "rbvi/contact/interface.hpp"
 #include "rbvi/method/answer.hpp"
+#include "rbvi/method/balance.hpp"
 #include "rbvi/method/residual.hpp"
 
 #include <optional>
 #include <string>
 
 namespace rbvi {
-
-/// What holds k free motions: B Z; Z^T F without springs, and the sums of the sizes of its terms.
-struct FreeMotions {
-  NodeLaws laws;
-  Matrix held; ///< rows of the laws x k
-  Vector load, terms;
-  /// Of the multipliers by what springs are relaxed at, while active sets stay; empty: not known.
-  Matrix slope{};
-};
 
 /// u: n coefficients; lambda: R coefficients, >= 0 but for those of the free modes; residual: of
 /// the reduced problem, at all nodes of the law where they are known.

@@ -105,8 +105,7 @@ public:
 private:
   MethodResult run(const Mu &mu, const Operators &op, const Vector &slip, const Solved *near,
                    bool continues);
-  MethodResult run_free(const Mu &mu, const Operators &op, ContactRows rows, const Vector &slip,
-                        const Solved *near);
+  MethodResult run_free(const Mu &mu, const Operators &op, const Vector &slip, const Solved *near);
 
   Problem &problem_;
   HfOptions options_;
