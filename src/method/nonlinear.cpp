@@ -58,7 +58,7 @@ private:
   bool is_complete(Iterate &iterate, double part, bool predicted);
   void check_method() const;
   std::string advice() const;
-  Iterate step(const Vector &state, const Iterate &last, double change, double part,
+  Iterate step(Vector &state, const Iterate &last, double change, double part,
                NonlinearResult &result);
   void measure(const Iterate &next, const Vector &state, const Vector &reaction,
                const Vector &last_x, double part, NonlinearResult &result) const;
@@ -86,6 +86,7 @@ void Iteration::check_method() const {
 
 /// What else to try.
 std::string Iteration::advice() const {
+  if (!contact_.advice.empty()) return contact_.advice;
   const bool newton = has_newton_ && method_ != NonlinearMethod::newton,
              anderson = method_ != NonlinearMethod::anderson;
   return std::string("try ") + (newton || anderson ? "-nonlinear_method " : "") +
@@ -94,8 +95,9 @@ std::string Iteration::advice() const {
          "more -nonlinear_max_steps, or a smaller load";
 }
 
-Iterate Iteration::step(const Vector &state, const Iterate &last, double change, double part,
+Iterate Iteration::step(Vector &state, const Iterate &last, double change, double part,
                         NonlinearResult &result) {
+  if (contact_.solve) return contact_.solve(state);
   if (nodal_ && last.x.size() > 0 && part == 1) return nodal_->step(state, last, change);
   LinearisedContact linearised(contact_, state, part);
   if (!segments_.empty() && segments_ != linearised.segments())
@@ -120,7 +122,8 @@ void Iteration::measure(const Iterate &next, const Vector &state, const Vector &
     return std::sqrt(std::max(0.0, load.dot(moved)));
   };
   const auto dual = [&](const Vector &x) {
-    return std::sqrt(std::max(0.0, x.dot(contact_.w_product * x)));
+    return contact_.w_product.size() == 0 ? x.norm()
+                                          : std::sqrt(std::max(0.0, x.dot(contact_.w_product * x)));
   };
   result.change_u = reaction.size() == 0
                         ? ratio((next.u - state).norm(), next.u.norm())
@@ -212,8 +215,8 @@ bool in_load_steps(const NonlinearContact &contact, const NonlinearOptions &opti
 
 /// The laws at the solution, with the condition there.
 /// `nodal`: it, if it is known.
-void finish(const NonlinearContact &contact, const NodalCondition *nodal, Iterate found,
-            NonlinearResult &result) {
+void measure_laws(const NonlinearContact &contact, const NodalCondition *nodal, Iterate &found,
+                  NonlinearResult &result) {
   Vector w;
   if (nodal != nullptr) {
     w = nodal->w;
@@ -226,10 +229,6 @@ void finish(const NonlinearContact &contact, const NodalCondition *nodal, Iterat
   }
   result.start = found.x - w.cwiseQuotient(found.diagonal);
   result.residual = violation(contact.laws, found.x, result.start);
-  result.x = std::move(found.x);
-  result.reaction = std::move(found.reaction);
-  result.state = std::move(found.u);
-  result.active = std::move(found.active);
 }
 
 } // namespace
@@ -277,7 +276,11 @@ NonlinearResult solve_nonlinear(const NonlinearContact &contact, const Start &st
                      " load steps, as without them it failed (" + from_rest + ")";
   result.reason += ", last change " + short_number(std::max(result.change_u, result.change_x)) +
                    ", contraction " + short_number(result.rate) + moving_segments(result);
-  finish(contact, iteration.condition(), std::move(iterate), result);
+  if (!contact.solve) measure_laws(contact, iteration.condition(), iterate, result);
+  result.x = std::move(iterate.x);
+  result.reaction = std::move(iterate.reaction);
+  result.state = std::move(iterate.u);
+  result.active = std::move(iterate.active);
   return result;
 }
 

@@ -2,7 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
-#include "rbvi/method/anderson.hpp"
+#include "rbvi/method/nonlinear.hpp"
 #include "rbvi/method/residual.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
 #include "rbvi/model/free_bodies.hpp"
@@ -149,49 +149,31 @@ void ConeSolver::check_pull(const ReducedAnswer &answer) const {
 /// state at which contact cannot be evaluated, as the bodies do not face each other there, is
 /// halved towards the last one at which it can.
 void ConeSolver::solve_following(ReducedAnswer &answer) {
-  constexpr int most_steps = 60;
-  constexpr double tolerance = 1e-9;
-  Vector state = undeformed(contact_, scene_, answer.mu), last_state, last_x;
-  const bool accelerates = options_.method != OnlineMethod::kacanov;
-  Anderson anderson(3);
-  std::vector<Vector> images;
-  int iterations = 0;
-  double last_change = 0;
-  for (int k = 0; k < most_steps; ++k) {
-    try {
-      solve_pair(state, answer);
-    } catch (const Error &) {
-      if (last_state.size() == 0 || k + 1 == most_steps) throw;
-      state = (state + last_state) / 2;
-      continue;
+  NonlinearOptions options{.method = NonlinearMethod::anderson, .tolerance = 1e-9, .load_steps = 0};
+  if (options_.method == OnlineMethod::kacanov) options.method = NonlinearMethod::kacanov;
+  int iterations = 0, solves = 0;
+  Vector last_state;
+  NonlinearContact contact;
+  contact.advice = "reduce again with -multiplier_reduction condensed";
+  contact.solve = [&](Vector &state) {
+    for (;; state = (state + last_state) / 2) {
+      try {
+        solve_pair(state, answer);
+        break;
+      } catch (const Error &) {
+        if (last_state.size() == 0 || ++solves == options.max_steps) throw;
+      }
     }
     last_state = state;
     iterations += answer.iterations;
-    images.push_back(model_.contact.trace * answer.u);
-    const Vector change = images.back() - state;
-    const bool settled = change.norm() <= tolerance * images.back().norm() && last_x.size() > 0 &&
-                         (answer.lambda - last_x).norm() <= tolerance * answer.lambda.norm();
-    if (settled) {
-      answer.iterations = iterations;
-      answer.contraction = last_change > 0 ? change.norm() / last_change : 0;
-      assemble(contact_, answer.mu, {images.back()}, answer.contact);
-      return;
-    }
-    last_x = answer.lambda;
-    last_change = change.norm();
-    if (!accelerates) {
-      state = std::exchange(images, {}).back();
-      continue;
-    }
-    const Vector shares = anderson.combine(change);
-    if (std::ssize(images) > shares.size()) images.erase(images.begin());
-    state.setZero();
-    for (Index j = 0; j < shares.size(); ++j)
-      state += shares[j] * images[j];
-  }
-  throw failure("the reduced condition that follows the displacement does not settle in " +
-                std::to_string(most_steps) +
-                " steps: reduce again with -multiplier_reduction condensed");
+    return Iterate{.x = answer.lambda, .u = model_.contact.trace * answer.u};
+  };
+  const Vector rest = undeformed(contact_, scene_, answer.mu);
+  const NonlinearResult found = solve_nonlinear(contact, {rest, {}}, options);
+  if (!found.converged) throw failure(found.reason);
+  answer.iterations = iterations;
+  answer.contraction = found.rate;
+  assemble(contact_, answer.mu, {found.state}, answer.contact);
 }
 
 void ConeSolver::solve_from_start(ReducedAnswer &answer) {

@@ -54,7 +54,7 @@ ReducedAnswer FollowingSolver::solve(const FullMu &mu, Relaxed relaxed) {
   at_mu_.set(mu, relaxed.beta);
   Vector load, unloaded; // half response to it, the displacement without contact
   Compliance &compliance = evaluated_.compliance();
-  NonlinearContact problem{.compliance = compliance,
+  NonlinearContact problem{.compliance = &compliance,
                            .free = Vector::Zero(compliance.size()),
                            .undeformed = undeformed(contact_, scene_, mu),
                            .laws = laws_at(columns_, contact_, mu),

@@ -7,7 +7,7 @@ FollowingResult solve_following(FactoredBody &body, const Problem &problem, Oper
                                 const Vector &slip, const Start &start,
                                 const NonlinearOptions &options) {
   const Contact &contact = problem.contact();
-  NonlinearContact nonlinear{.compliance = body,
+  NonlinearContact nonlinear{.compliance = &body,
                              .free = body.free(op),
                              .undeformed = undeformed(contact, problem.scene(), op.mu),
                              .laws = op.laws,

@@ -40,7 +40,7 @@ struct Beads {
     NonlinearContact contact{
         [this](const Vector &state, Linearised &l) { linearise(state, l); },
         [this](const Vector &state, const Vector &x) { return curvature(state, x); },
-        columns,
+        &columns,
         free,
         Vector::Zero(2 * n),
         uniform_laws(n, friction ? 2 : 1, bound),

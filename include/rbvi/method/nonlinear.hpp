@@ -36,17 +36,32 @@ struct NodalContact {
   NodalCompliance &compliance;
 };
 
+/// A solution of one linearised problem.
+struct Iterate {
+  Vector x{};
+  Vector start{};    ///< with friction: where the next starts
+  Vector diagonal{}; ///< H_jj; where the column was not asked for the mean of the others
+  Vector u{};
+  Vector reaction{}; ///< load on the contact dofs: u = u_0 - C reaction
+  std::vector<Index> active{};
+};
+
 struct NonlinearContact {
   std::function<void(const Vector &state, Linearised &at_state)> linearise{};
   /// Empty: there is none.
   std::function<CurvatureRows(const Vector &state, const Vector &x)> curvature{};
-  Compliance &compliance;
+  Compliance *compliance = nullptr;
   Vector free;       ///< u_0
   Vector undeformed; ///< the state in which nothing has moved
   NodeLaws laws;
-  SparseMatrix w_product; ///< Gram matrix of the multipliers
+  SparseMatrix
+      w_product; ///< Gram matrix of the multipliers; empty: their coefficients are measured
   /// Only where the rows of x are the normal ones of all nodes, then the tangential ones.
   std::optional<NodalContact> nodal{};
+  /// Instead of B, g and the compliance: x and u of the problem linearised at a state, which it may
+  /// move to one where there is a problem. Then NonlinearResult has no start and no residual.
+  std::function<Iterate(Vector &state)> solve{};
+  std::string advice{}; ///< where it does not settle; empty: other methods
 };
 
 enum class NonlinearMethod {
