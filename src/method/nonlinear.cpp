@@ -4,6 +4,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/method/anderson.hpp"
+#include "rbvi/method/residual.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -213,22 +214,42 @@ bool in_load_steps(const NonlinearContact &contact, const NonlinearOptions &opti
   return true;
 }
 
-/// The laws at the solution, with the condition there.
-/// `nodal`: it, if it is known.
+/// B v of displacements v, by averages at the nodes.
+Vector times_b(const NodalContact &contact, const NodeLaws &laws, const NodalCondition &at,
+               const Vector &v) {
+  const Vector mean = contact.compliance.average() * v;
+  Vector result = Vector::Zero(laws.rows);
+  for (Index node = 0; node < laws.nodes(); ++node) {
+    const auto n = at.normal.col(node);
+    result[laws.normal[node]] = n.dot(mean.segment<2>(2 * node));
+    if (laws.has_tangent(node))
+      result[laws.tangent[node]] = n[0] * mean[2 * node + 1] - n[1] * mean[2 * node];
+  }
+  return result;
+}
+
+/// What is left of the laws at the solution, with the condition there. `nodal`: it, if it is known.
 void measure_laws(const NonlinearContact &contact, const NodalCondition *nodal, Iterate &found,
                   NonlinearResult &result) {
-  Vector w;
+  Vector w, moved, unloaded; // B u, B u_0
   if (nodal != nullptr) {
     w = nodal->w;
     found.reaction = nodal->load;
+    moved = times_b(*contact.nodal, contact.laws, *nodal, found.u);
+    unloaded = contact.free.isZero(0) ? Vector(Vector::Zero(w.size()))
+                                      : times_b(*contact.nodal, contact.laws, *nodal, contact.free);
   } else {
     Linearised here;
     contact.linearise(found.u, here);
-    w = here.g - here.b * found.u;
+    moved = here.b * found.u;
+    unloaded = here.b * contact.free;
+    w = here.g - moved;
     found.reaction = here.b.transpose() * found.x;
   }
   result.start = found.x - w.cwiseQuotient(found.diagonal);
-  result.residual = violation(contact.laws, found.x, result.start);
+  result.residual =
+      residual_of_laws(contact.laws, w + moved, found.x, w,
+                       (unloaded.cwiseAbs() + (moved - unloaded).cwiseAbs()).maxCoeff());
 }
 
 } // namespace

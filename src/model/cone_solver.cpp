@@ -109,25 +109,27 @@ void ConeSolver::solve_pair(const Vector &state, ReducedAnswer &answer) {
 
 void ConeSolver::finish(ReducedAnswer &answer) {
   const Vector au = at_mu_.times(answer.u), btx = b_scale_ * (b_.transpose() * answer.lambda),
-               bu = b_scale_ * (b_ * answer.u);
+               excess = b_scale_ * (b_ * answer.u) - g_;
   const Vector diagonal = at_mu_.diagonal();
   const Vector moved =
       answer.u.cwiseAbs() + (f_.cwiseAbs() + btx.cwiseAbs()).cwiseQuotient(diagonal.cwiseAbs());
   const double displacement = b_scale_ * (b_.cwiseAbs() * moved).maxCoeff();
   answer.energy = 0.5 * answer.u.dot(au) - f_.dot(answer.u);
-  answer.residual = kkt_residual(
-      {at_mu_.restricted(au), at_mu_.restricted(btx), at_mu_.restricted(f_), bu, g_, answer.lambda,
-       model_.contact.free_modes, displacement, diagonal.cwiseProduct(answer.u).norm()});
+  const NodeLaws laws = uniform_laws(b_.rows(), 1, {});
+  const Vector weights = Vector::Ones(b_.rows());
+  answer.residual = residual_of({laws, weights, g_, answer.lambda, excess, displacement, 0,
+                                 model_.contact.free_modes},
+                                {at_mu_.restricted(au + btx - f_).norm(),
+                                 at_mu_.restricted(f_).norm() + at_mu_.restricted(btx).norm(),
+                                 diagonal.cwiseProduct(answer.u).norm()})
+                        .largest();
   answer.least_pressure = active_fraction;
   if (model_.body.springs.size() > 0) {
     const Matrix motions = at_mu_.free_motions();
-    answer.motions =
-        free_motions_at(at_mu_, motions, b_scale_ * (b_ * motions), uniform_laws(b_.rows(), 1, {}));
+    answer.motions = free_motions_at(at_mu_, motions, b_scale_ * (b_ * motions), laws);
   }
-  if (!(answer.residual <= query_residual_limit))
-    throw failure((std::ostringstream("the reduced answer has a KKT residual of ", std::ios::ate)
-                   << answer.residual << ": reduce again with fewer generators or more supremizers")
-                      .str());
+  check_residual(answer.residual, query_residual_limit,
+                 ": reduce again with fewer generators or more supremizers");
   if (!positive_) check_pull(answer);
 }
 

@@ -5,7 +5,6 @@
 
 #include "rbvi/contact/following.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/text.hpp"
 #include "rbvi/model/free_bodies.hpp"
 
 namespace rbvi {
@@ -72,9 +71,8 @@ ReducedAnswer FollowingSolver::solve(const FullMu &mu, Relaxed relaxed) {
       .contact = contact_, .mu = mu, .rows = rows_are_identity_ ? nullptr : &evaluated_.rows()};
   NonlinearResult found =
       solve_following(followed, nodal_ ? &*nodal_ : nullptr, problem, start(mu), options);
-  if (!(found.residual <= query_residual_limit))
-    throw failure("the law of contact and friction is met to " + short_number(found.residual) +
-                  " only: reduce again with more training parameters");
+  check_residual(found.residual, query_residual_limit,
+                 ": reduce again with more training parameters");
   ReducedAnswer answer;
   answer.mu = mu;
   if (looks_for_others_) answer.to_other = distance_from_rest(problem, found, options);

@@ -87,7 +87,18 @@ AtAllNodes LawProblem::at_all_nodes(const LawAtMu &law, const Vector &x) {
   return result;
 }
 
+double LawProblem::residual(const LawAtMu &law, const Vector &x, const Vector &w) const {
+  const Vector &g = contact_->g();
+  return residual_of_laws(law.laws, g, x, w,
+                          ((law.q - g).cwiseAbs() + (w - law.q).cwiseAbs()).maxCoeff());
+}
+
 void LawProblem::displace(ReducedAnswer &answer) const {
+  if (answer.left.size() > 0) {
+    answer.residual = residual(law_, answer.lambda, answer.left);
+    check_residual(answer.residual, query_residual_limit,
+                   ": reduce again with more training parameters");
+  }
   for (const Index column : edge_)
     if (answer.lambda[column] != 0)
       throw failure("contact reaches the edge of the nodes that the model has multipliers at: " +

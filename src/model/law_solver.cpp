@@ -29,16 +29,15 @@ void NodeLawSolver::solve_at_nodes(const LawAtMu &law, ReducedAnswer &answer) {
   const bool continues = answer.motions && answer.start.size() > 0;
   FrictionSolver &friction = problem_.friction();
   FrictionAnswer found = friction.answer(law.q, start, by_rule_ && !continues);
-  if (!found.converged || !(found.residual <= query_residual_limit))
+  if (!found.converged)
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: " + found.reason);
   if (answer.motions) answer.motions->slope = friction.change(law.by_beta);
-  if (looks_for_others_ && !continues) answer.to_other = distance_to_other_answer(friction, found);
-  if (found.has_others) answer.to_other = std::max(answer.to_other, least_distance);
+  answer.to_other = distance_seen(friction, found, looks_for_others_ && !continues);
   answer.energy = 0.5 * (found.x.dot(found.w - law.q) - law.load.squaredNorm());
-  answer.residual = found.residual;
   answer.iterations += found.iterations;
   answer.lambda = std::move(found.x);
+  answer.left = std::move(found.w);
   answer.start = std::move(found.start);
 }
 

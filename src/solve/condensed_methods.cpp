@@ -189,7 +189,9 @@ public:
   void check(const MethodResult &result) const override { require_residual(result, allowed()); }
 
 private:
-  double allowed() const { return std::max(residual_limit, 10 * options_.nonlinear.tolerance); }
+  double allowed() const {
+    return limit_of_iteration(residual_limit, options_.nonlinear.tolerance);
+  }
   FollowingResult solve_from(const Start &start, const ContactTask &task,
                              const NonlinearOptions &options, Operators &op) {
     FollowingResult found = solve_following(body_, problem_, op, task.slip, start, options);

@@ -84,11 +84,9 @@ const std::vector<std::string> &hf_method_names() {
 }
 
 void require_residual(const MethodResult &result, double allowed) {
-  if (!(result.residual <= allowed))
-    throw failure("the KKT residual is " + short_number(result.residual) + ", above " +
-                  short_number(allowed) +
-                  ", and refinement leaves that: with an iterative -hf_ksp_type lower "
-                  "-hf_ksp_rtol; else cells, or moduli, are too far apart in size");
+  check_residual(result.residual, allowed,
+                 ", and refinement leaves that: with an iterative -hf_ksp_type lower "
+                 "-hf_ksp_rtol; else cells, or moduli, are too far apart in size");
   if (!(result.u_error <= least_known))
     throw failure("by round-off of the stiffness the displacement may be off by " +
                   short_number(result.u_error) +

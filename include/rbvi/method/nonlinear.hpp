@@ -100,11 +100,9 @@ struct NonlinearResult {
   /// (A.8) of the last step: the energy norm of the change of u over that of u - u_0, and the norm
   /// of the change of x in W over that of x.
   double change_u = 0, change_x = 0;
-  /// Largest violation of the laws with the condition at the solution, relative:
-  /// |x - P(x - w / H_jj)| over max |x|, P the projection of the laws.
-  double residual = 0;
-  double rate = 0; ///< contraction: the change of the last step over that of the one before
-  Vector last_x;   ///< not converged: x of the last step; empty: there is none
+  double residual = 0; ///< of the laws with the condition at the solution: residual_of_laws
+  double rate = 0;     ///< contraction: the change of the last step over that of the one before
+  Vector last_x;       ///< not converged: x of the last step; empty: there is none
   bool converged = false;
   std::string reason; ///< why it stopped; not converged: what to try
 };

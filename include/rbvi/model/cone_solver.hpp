@@ -73,17 +73,4 @@ private:
   Vector f_, g_;
 };
 
-/// What a residual of the pair of spaces is made of; what it refers to must outlive it.
-struct KktTerms {
-  const Vector &au, &btx, &f; ///< A u, B^T x
-  const Vector &bu, &g, &x;   ///< B u
-  Index equations = 0;        ///< so many of the last rows have B u = g
-  double displacement = 0;    ///< what cancels in B u: ContactRemainders::displacement, by rows
-  double stiffness = 0;       ///< what cancels in A u: |diag(A) u|
-};
-
-/// KktResidual::largest() of A u + B^T x = f, B u <= g, x . (B u - g) = 0 for x >= 0, rows of
-/// weight 1.
-double kkt_residual(const KktTerms &answer);
-
 } // namespace rbvi

@@ -40,8 +40,11 @@ public:
   FrictionSolver &friction() { return *friction_; } ///< likewise
   const BodyAtMu &body() const { return at_mu_; }
   AtAllNodes at_all_nodes(const LawAtMu &law, const Vector &x);
-  /// Sets the displacement of answer.lambda. Throws failure where contact leaves the nodes that the
-  /// model has multipliers at.
+  /// KktResidual::largest() of multipliers with w = H x + q.
+  double residual(const LawAtMu &law, const Vector &x, const Vector &w) const;
+  /// Sets the displacement of answer.lambda and, where answer.left is there, the residual. Throws
+  /// failure where that is above its limit, and where contact leaves the nodes that the model has
+  /// multipliers at.
   void displace(ReducedAnswer &answer) const;
 
 private:

@@ -119,15 +119,16 @@ bool CollocatedSolver::answer_on_functions(const LawAtMu &law, const Vector &sta
   }
   AtAllNodes nodes = at_nodes_.problem().at_all_nodes(law, answer.lambda);
   answer.energy = 0.5 * (answer.lambda.dot(nodes.w - law.q) - law.load.squaredNorm());
-  answer.residual = violation(law.laws, answer.lambda, nodes.start);
+  answer.residual = at_nodes_.problem().residual(law, answer.lambda, nodes.w);
   answer.start = std::move(nodes.start);
-  return !mends || answer.residual <= mended_above;
+  return !mends || violation(law.laws, answer.lambda, answer.start) <= mended_above;
 }
 
 ReducedAnswer CollocatedSolver::solve(const FullMu &mu, Relaxed relaxed) {
   const Vector from = start(mu);
   ReducedAnswer answer = std::move(relaxed.before);
   answer.start.resize(0);
+  answer.left.resize(0);
   answer.iterations = 0;
   const LawAtMu &law = at_nodes_.problem().at(mu, answer, {}, relaxed.beta);
   if (!answer_on_functions(law, from, answer)) at_nodes_.solve_at_nodes(law, answer);
