@@ -13,12 +13,8 @@ namespace rbvi {
 
 namespace {
 
-constexpr double bound_accuracy = 1e-12; ///< change of u by new bounds of friction, relative
-constexpr double round_off = 1e-9;       ///< of that change: below it it may stagnate
-constexpr double stagnant = 0.9;         ///< of the last change
-constexpr double vanishing = 1e-9;       ///< of the start: below it terms count as zero
-constexpr double of_loads = 0.1;         ///< below it their residual is round-off of the loads
-constexpr int most_outer_iterations = 60;
+constexpr double vanishing = 1e-9; ///< of the start: below it terms count as zero
+constexpr double of_loads = 0.1;   ///< below it their residual is round-off of the loads
 
 class ByNitsche : public ContactMethod {
 public:
@@ -113,37 +109,26 @@ NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheStart *st
 void NitscheSolver::run(bool nested, Vec u, NitscheSolution &result) {
   NitscheSystem &system = *system_;
   const Handle<Vec> before = like(u);
-  const std::vector<NitscheLaw> laws = laws_at_points(system.faces);
-  FollowingBounds following;
-  const double accuracy = system.accuracy;
-  const bool loose = nested && !options_.plain_steps && !loop_end;
-  system.tolerance = loose ? std::max(1e-3, accuracy) : accuracy;
-  double last_change = 1;
-  for (;;) {
+  const auto newton = [&](double tolerance) {
+    system.tolerance = tolerance;
     RBVI_CALL(VecCopy(u, before.get()));
     result.iterations += system.newton(u, result.reason);
-    ++result.outer_iterations;
     if (loop_end) loop_end(system.on_layer(u), system.bounds);
-    if (!nested) return;
-    const Vector used = system.bounds;
-    system.bounds =
-        following.next(laws, nitsche_pressures(system.faces, system.on_layer(u)), system.bounds);
     RBVI_CALL(VecAXPY(before.get(), -1, u));
-    const double size = norm(u), change = size == 0 ? 0 : norm(before.get()) / size;
-    const bool rests = change <= round_off && change > stagnant * last_change;
-    // The first bounds are those of the start, not of u.
-    const bool settled = result.outer_iterations > 1 && (change <= bound_accuracy || rests);
-    if (settled && system.tolerance <= accuracy) {
-      system.bounds = used; // under which forces balance
-      return;
-    }
-    last_change = change;
-    system.tolerance = std::clamp(1e-2 * change, accuracy, system.tolerance);
-    if (result.outer_iterations == most_outer_iterations)
-      throw failure("the bound of friction did not settle in " +
-                    std::to_string(most_outer_iterations) + " steps: it still changes u by " +
-                    short_number(change));
+    const double size = norm(u);
+    return size == 0 ? 0 : norm(before.get()) / size;
+  };
+  result.outer_iterations = 1;
+  if (!nested) {
+    newton(system.accuracy);
+    return;
   }
+  const double accuracy = system.accuracy;
+  const bool loose = !options_.plain_steps && !loop_end;
+  const auto pressures = [&] { return nitsche_pressures(system.faces, system.on_layer(u)); };
+  result.outer_iterations = settle_bounds(
+      laws_at_points(system.faces),
+      {newton, pressures, system.bounds, loose ? std::max(1e-3, accuracy) : accuracy, accuracy});
 }
 
 std::unique_ptr<ContactMethod> make_nitsche_method(Problem &problem, const HfOptions &options) {
