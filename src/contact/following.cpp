@@ -6,7 +6,7 @@
 namespace rbvi {
 
 NonlinearResult solve_following(FollowedContact &followed, NodalCompliance *nodal,
-                                NonlinearContact &problem, const NonlinearStart &start,
+                                NonlinearContact &problem, const Start &start,
                                 const NonlinearOptions &options) {
   const Contact &contact = followed.contact;
   ContactOperators &op = followed.operators;

@@ -13,8 +13,6 @@ namespace {
 
 using Row = NitschePoint::Row;
 
-constexpr double steepest = 1e3; ///< of a threshold in contact alone, by the pressure
-
 Row local(const std::array<int, 12> &dofs, const Vector &u) {
   Row result = Row::Zero();
   for (std::size_t i = 0; i < dofs.size(); ++i)
@@ -66,11 +64,6 @@ Vector tested(const std::vector<NitscheFace> &faces, Index dofs, const Vector &f
 double length_of(const std::array<Point, 4> &vertices, int edge) {
   const auto [i, j] = simplex_edges[edge];
   return edge_length(vertices[i], vertices[j]);
-}
-
-/// Of a law that jumps: what it jumps to.
-double highest(const NitscheLaw &law) {
-  return law->piece(0).offset;
 }
 
 } // namespace
@@ -142,48 +135,6 @@ Matrix nitsche_pressures(const std::vector<NitscheFace> &faces, const Vector &u)
   at_all_points(faces, [&](const NitscheFace &face, const NitschePoint &point, Index i) {
     result.row(i) += face.gamma * Eigen::RowVector2d(point.facing.gap, -point.facing.slip);
   });
-  return result;
-}
-
-double nitsche_bound(const NitscheLaw &law, double p_n) {
-  if (!law) return -1;
-  const double pressure = std::max(0.0, -p_n), bound = law->value(pressure);
-  return law->jumps() ? std::min(bound, steepest * pressure) : bound;
-}
-
-Vector FollowingBounds::next(std::span<const NitscheLaw> laws, const Matrix &pressures,
-                             const Vector &bounds) {
-  Vector result(bounds.size()), excess = Vector::Zero(bounds.size());
-  std::vector<Index> between;
-  const bool first = bounds_.size() != bounds.size();
-  for (Index i = 0; i < bounds.size(); ++i) {
-    const NitscheLaw &law = laws[static_cast<std::size_t>(i)];
-    result[i] = nitsche_bound(law, pressures(i, 0));
-    if (!law || !law->jumps()) continue;
-    excess[i] = pressures(i, 0) + bounds[i] / steepest;
-    const bool inside = bounds[i] > 0 && bounds[i] < highest(law);
-    if (!first && (inside || excess[i] * excess_[i] < 0)) between.push_back(i);
-  }
-  if (between != between_) { // each by its own change
-    slopes_ = Matrix::Zero(std::ssize(between), std::ssize(between));
-    for (Index k = 0; k < slopes_.rows(); ++k) {
-      const Index i = between[k];
-      const double slope = (excess[i] - excess_[i]) / (bounds[i] - bounds_[i]);
-      slopes_(k, k) = slope > 0 ? slope : std::abs(excess[i]) / highest(laws[i]);
-    }
-    between_ = between;
-  } else if (!between.empty()) { // Broyden's
-    const Vector change = (bounds - bounds_)(between), rise = (excess - excess_)(between);
-    if (change.norm() > 0)
-      slopes_ += (rise - slopes_ * change) * change.transpose() / change.squaredNorm();
-  }
-  Vector step;
-  if (!between.empty()) step = lu_solve(slopes_, -Vector(excess(between)));
-  for (Index k = 0; k < step.size(); ++k)
-    if (const Index i = between[k]; std::isfinite(step[k]))
-      result[i] = std::clamp(bounds[i] + step[k], 0.0, highest(laws[i]));
-  bounds_ = bounds;
-  excess_ = std::move(excess);
   return result;
 }
 

@@ -105,7 +105,7 @@ LinearisedContact::LinearisedContact(const NonlinearContact &contact, const Vect
 }
 
 void LinearisedContact::move(const std::vector<Index> &which) {
-  const Matrix moved = contact_.compliance.moved(at_.b, which);
+  const Matrix moved = contact_.compliance->moved(at_.b, which);
   for (std::size_t k = 0; k < which.size(); ++k)
     moved_[which[k]] = moved.col(static_cast<Index>(k));
 }
@@ -203,8 +203,8 @@ std::optional<Iterate> LinearisedContact::solve_with_curvature(const Iterate &st
   constexpr int most_sets = 20;
   const CurvatureLoad curvature(contact_.curvature(state_ + back_, start.x));
   const std::vector<Index> &dofs = curvature.dofs();
-  contact_.compliance.require(dofs);
-  const ComplianceBetween local(dofs, contact_.compliance);
+  contact_.compliance->require(dofs);
+  const ComplianceBetween local(dofs, *contact_.compliance);
   std::vector<Index> active = facing(start.active);
   for (int set = 0; set < most_sets; ++set) {
     std::vector<Index> fresh;
@@ -228,8 +228,8 @@ std::optional<Iterate> LinearisedContact::solve_with_curvature(const Iterate &st
     Vector u = free_ - of_active * x;
     LoadedColumns by_curvature;
     for (std::size_t k = 0; k < dofs.size(); ++k)
-      by_curvature.add(z[static_cast<Index>(k)], contact_.compliance.column(dofs[k]).data(),
-                       contact_.compliance.body_of(dofs[k]));
+      by_curvature.add(z[static_cast<Index>(k)], contact_.compliance->column(dofs[k]).data(),
+                       contact_.compliance->body_of(dofs[k]));
     by_curvature.subtract_from(u, {0, u.size()});
     const std::vector<Index> wrong = violated(active, x, u);
     if (!wrong.empty()) {

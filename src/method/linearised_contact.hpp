@@ -8,16 +8,6 @@
 
 namespace rbvi {
 
-/// A solution of one linearised problem.
-struct Iterate {
-  Vector x;
-  Vector start;    ///< with friction: where the next starts
-  Vector diagonal; ///< H_jj; where the column was not asked for the mean of the others
-  Vector u;
-  Vector reaction; ///< load on the contact dofs: u = u_0 - C reaction
-  std::vector<Index> active;
-};
-
 class LinearisedContact {
 public:
   /// At `state`, under a part (0 ... 1) of the motion and of the loads.

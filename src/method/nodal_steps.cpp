@@ -185,7 +185,7 @@ Eigen::Matrix2Xd NodalSteps::newton(Vector &x, double change) {
     const std::vector<Index> wrong = violated(x, loads);
     if (wrong.empty() || set == most_sets) return loads;
     active = pivoting::exchanged(active, wrong);
-    contact_.nodal->compliance.require(active, contact_.compliance);
+    contact_.nodal->compliance.require(active, *contact_.compliance);
   }
 }
 
@@ -222,7 +222,7 @@ Matrix NodalSteps::columns(const std::vector<Index> &which) {
       fresh.push_back(row);
       of_fresh.push_back(near_nodes_[row % count]);
     }
-  compliance.require(of_fresh, contact_.compliance);
+  compliance.require(of_fresh, *contact_.compliance);
   for (const Index row : fresh) {
     known_[row] = true;
     const Index node = near_nodes_[row % count];
@@ -281,13 +281,13 @@ Iterate NodalSteps::step(const Vector &state, const Iterate &last, double change
   if (rows_.empty()) see(carrying(contact_.laws, last.x));
   contact_.nodal->evaluate(state, last.x, near_, here_);
   const std::vector<Index> nodes = touching(last.x);
-  compliance.require(nodes, contact_.compliance);
+  compliance.require(nodes, *contact_.compliance);
   Iterate next;
   next.u = state;
   for (const auto &[first, count] : rows_)
     next.u.segment(first, count) = contact_.free.segment(first, count);
   LoadedColumns of_dofs, of_nodes;
-  of_dofs.add(here_.load, contact_.compliance);
+  of_dofs.add(here_.load, *contact_.compliance);
   subtract(of_dofs, next.u);
   e_ = (compliance.average() * (next.u - state)).reshaped(2, contact_.laws.nodes());
   Eigen::Matrix2Xd loads;
@@ -349,7 +349,7 @@ bool NodalSteps::complete(Iterate &iterate) {
     rows_ = {{0, contact_.free.size()}};
     iterate.u = contact_.free;
     LoadedColumns of_dofs;
-    of_dofs.add(iterate.reaction, contact_.compliance);
+    of_dofs.add(iterate.reaction, *contact_.compliance);
     subtract(of_dofs, iterate.u);
   }
   contact_.nodal->evaluate(iterate.u, iterate.x, near_, here_);

@@ -4,6 +4,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/method/anderson.hpp"
+#include "rbvi/method/residual.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +59,7 @@ private:
   bool is_complete(Iterate &iterate, double part, bool predicted);
   void check_method() const;
   std::string advice() const;
-  Iterate step(const Vector &state, const Iterate &last, double change, double part,
+  Iterate step(Vector &state, const Iterate &last, double change, double part,
                NonlinearResult &result);
   void measure(const Iterate &next, const Vector &state, const Vector &reaction,
                const Vector &last_x, double part, NonlinearResult &result) const;
@@ -86,6 +87,7 @@ void Iteration::check_method() const {
 
 /// What else to try.
 std::string Iteration::advice() const {
+  if (!contact_.advice.empty()) return contact_.advice;
   const bool newton = has_newton_ && method_ != NonlinearMethod::newton,
              anderson = method_ != NonlinearMethod::anderson;
   return std::string("try ") + (newton || anderson ? "-nonlinear_method " : "") +
@@ -94,8 +96,9 @@ std::string Iteration::advice() const {
          "more -nonlinear_max_steps, or a smaller load";
 }
 
-Iterate Iteration::step(const Vector &state, const Iterate &last, double change, double part,
+Iterate Iteration::step(Vector &state, const Iterate &last, double change, double part,
                         NonlinearResult &result) {
+  if (contact_.solve) return contact_.solve(state);
   if (nodal_ && last.x.size() > 0 && part == 1) return nodal_->step(state, last, change);
   LinearisedContact linearised(contact_, state, part);
   if (!segments_.empty() && segments_ != linearised.segments())
@@ -120,7 +123,8 @@ void Iteration::measure(const Iterate &next, const Vector &state, const Vector &
     return std::sqrt(std::max(0.0, load.dot(moved)));
   };
   const auto dual = [&](const Vector &x) {
-    return std::sqrt(std::max(0.0, x.dot(contact_.w_product * x)));
+    return contact_.w_product.size() == 0 ? x.norm()
+                                          : std::sqrt(std::max(0.0, x.dot(contact_.w_product * x)));
   };
   result.change_u = reaction.size() == 0
                         ? ratio((next.u - state).norm(), next.u.norm())
@@ -210,31 +214,47 @@ bool in_load_steps(const NonlinearContact &contact, const NonlinearOptions &opti
   return true;
 }
 
-/// The laws at the solution, with the condition there.
-/// `nodal`: it, if it is known.
-void finish(const NonlinearContact &contact, const NodalCondition *nodal, Iterate found,
-            NonlinearResult &result) {
-  Vector w;
+/// B v of displacements v, by averages at the nodes.
+Vector times_b(const NodalContact &contact, const NodeLaws &laws, const NodalCondition &at,
+               const Vector &v) {
+  const Vector mean = contact.compliance.average() * v;
+  Vector result = Vector::Zero(laws.rows);
+  for (Index node = 0; node < laws.nodes(); ++node) {
+    const auto n = at.normal.col(node);
+    result[laws.normal[node]] = n.dot(mean.segment<2>(2 * node));
+    if (laws.has_tangent(node))
+      result[laws.tangent[node]] = n[0] * mean[2 * node + 1] - n[1] * mean[2 * node];
+  }
+  return result;
+}
+
+/// What is left of the laws at the solution, with the condition there. `nodal`: it, if it is known.
+void measure_laws(const NonlinearContact &contact, const NodalCondition *nodal, Iterate &found,
+                  NonlinearResult &result) {
+  Vector w, moved, unloaded; // B u, B u_0
   if (nodal != nullptr) {
     w = nodal->w;
     found.reaction = nodal->load;
+    moved = times_b(*contact.nodal, contact.laws, *nodal, found.u);
+    unloaded = contact.free.isZero(0) ? Vector(Vector::Zero(w.size()))
+                                      : times_b(*contact.nodal, contact.laws, *nodal, contact.free);
   } else {
     Linearised here;
     contact.linearise(found.u, here);
-    w = here.g - here.b * found.u;
+    moved = here.b * found.u;
+    unloaded = here.b * contact.free;
+    w = here.g - moved;
     found.reaction = here.b.transpose() * found.x;
   }
   result.start = found.x - w.cwiseQuotient(found.diagonal);
-  result.residual = violation(contact.laws, found.x, result.start);
-  result.x = std::move(found.x);
-  result.reaction = std::move(found.reaction);
-  result.state = std::move(found.u);
-  result.active = std::move(found.active);
+  result.residual =
+      residual_of_laws(contact.laws, w + moved, found.x, w,
+                       (unloaded.cwiseAbs() + (moved - unloaded).cwiseAbs()).maxCoeff());
 }
 
 } // namespace
 
-NonlinearResult solve_nonlinear(const NonlinearContact &contact, const NonlinearStart &start,
+NonlinearResult solve_nonlinear(const NonlinearContact &contact, const Start &start,
                                 const NonlinearOptions &options) {
   NonlinearResult result;
   Iteration iteration(contact, options);
@@ -277,7 +297,11 @@ NonlinearResult solve_nonlinear(const NonlinearContact &contact, const Nonlinear
                      " load steps, as without them it failed (" + from_rest + ")";
   result.reason += ", last change " + short_number(std::max(result.change_u, result.change_x)) +
                    ", contraction " + short_number(result.rate) + moving_segments(result);
-  finish(contact, iteration.condition(), std::move(iterate), result);
+  if (!contact.solve) measure_laws(contact, iteration.condition(), iterate, result);
+  result.x = std::move(iterate.x);
+  result.reaction = std::move(iterate.reaction);
+  result.state = std::move(iterate.u);
+  result.active = std::move(iterate.active);
   return result;
 }
 

@@ -1,6 +1,8 @@
 #include "rbvi/method/residual.hpp"
 
+#include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
+#include "rbvi/core/text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -69,6 +71,20 @@ KktResidual residual_of(const ContactSums &contact, bool tangents, const Remaind
   kkt.sign = relative({larger(0, negative), pressure});
   if (tangents) kkt.friction = larger(relative({above, stress}), relative({idle_friction, scale}));
   return kkt;
+}
+
+void check_residual(double residual, double limit, const std::string &advice) {
+  if (!(residual <= limit))
+    throw failure("the KKT residual is " + short_number(residual) + ", above " +
+                  short_number(limit) + advice);
+}
+
+double residual_of_laws(const NodeLaws &laws, const Vector &g, const Vector &lambda,
+                        const Vector &w, double displacement) {
+  if (lambda.size() == 0) return 0;
+  const Vector weights = Vector::Ones(laws.nodes()), excess = -w;
+  const double stress = lambda.lpNorm<Eigen::Infinity>();
+  return residual_of({laws, weights, g, lambda, excess, displacement, stress}, {0, 0}).largest();
 }
 
 } // namespace rbvi

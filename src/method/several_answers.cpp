@@ -48,4 +48,9 @@ double distance_to_other_answer(FrictionSolver &solver, const FrictionResult &fo
   return farthest;
 }
 
+double distance_seen(FrictionSolver &solver, const FrictionAnswer &found, bool looks) {
+  const double distance = looks && found.converged ? distance_to_other_answer(solver, found) : 0;
+  return found.has_others ? std::max(distance, least_distance) : distance;
+}
+
 } // namespace rbvi

@@ -2,7 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
-#include "rbvi/method/anderson.hpp"
+#include "rbvi/method/nonlinear.hpp"
 #include "rbvi/method/residual.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
 #include "rbvi/model/free_bodies.hpp"
@@ -109,25 +109,27 @@ void ConeSolver::solve_pair(const Vector &state, ReducedAnswer &answer) {
 
 void ConeSolver::finish(ReducedAnswer &answer) {
   const Vector au = at_mu_.times(answer.u), btx = b_scale_ * (b_.transpose() * answer.lambda),
-               bu = b_scale_ * (b_ * answer.u);
+               excess = b_scale_ * (b_ * answer.u) - g_;
   const Vector diagonal = at_mu_.diagonal();
   const Vector moved =
       answer.u.cwiseAbs() + (f_.cwiseAbs() + btx.cwiseAbs()).cwiseQuotient(diagonal.cwiseAbs());
   const double displacement = b_scale_ * (b_.cwiseAbs() * moved).maxCoeff();
   answer.energy = 0.5 * answer.u.dot(au) - f_.dot(answer.u);
-  answer.residual = kkt_residual(
-      {at_mu_.restricted(au), at_mu_.restricted(btx), at_mu_.restricted(f_), bu, g_, answer.lambda,
-       model_.contact.free_modes, displacement, diagonal.cwiseProduct(answer.u).norm()});
+  const NodeLaws laws = uniform_laws(b_.rows(), 1, {});
+  const Vector weights = Vector::Ones(b_.rows());
+  answer.residual = residual_of({laws, weights, g_, answer.lambda, excess, displacement, 0,
+                                 model_.contact.free_modes},
+                                {at_mu_.restricted(au + btx - f_).norm(),
+                                 at_mu_.restricted(f_).norm() + at_mu_.restricted(btx).norm(),
+                                 diagonal.cwiseProduct(answer.u).norm()})
+                        .largest();
   answer.least_pressure = active_fraction;
   if (model_.body.springs.size() > 0) {
     const Matrix motions = at_mu_.free_motions();
-    answer.motions =
-        free_motions_at(at_mu_, motions, b_scale_ * (b_ * motions), uniform_laws(b_.rows(), 1, {}));
+    answer.motions = free_motions_at(at_mu_, motions, b_scale_ * (b_ * motions), laws);
   }
-  if (!(answer.residual <= query_residual_limit))
-    throw failure((std::ostringstream("the reduced answer has a KKT residual of ", std::ios::ate)
-                   << answer.residual << ": reduce again with fewer generators or more supremizers")
-                      .str());
+  check_residual(answer.residual, query_residual_limit,
+                 ": reduce again with fewer generators or more supremizers");
   if (!positive_) check_pull(answer);
 }
 
@@ -149,49 +151,31 @@ void ConeSolver::check_pull(const ReducedAnswer &answer) const {
 /// state at which contact cannot be evaluated, as the bodies do not face each other there, is
 /// halved towards the last one at which it can.
 void ConeSolver::solve_following(ReducedAnswer &answer) {
-  constexpr int most_steps = 60;
-  constexpr double tolerance = 1e-9;
-  Vector state = undeformed(contact_, scene_, answer.mu), last_state, last_x;
-  const bool accelerates = options_.method != OnlineMethod::kacanov;
-  Anderson anderson(3);
-  std::vector<Vector> images;
-  int iterations = 0;
-  double last_change = 0;
-  for (int k = 0; k < most_steps; ++k) {
-    try {
-      solve_pair(state, answer);
-    } catch (const Error &) {
-      if (last_state.size() == 0 || k + 1 == most_steps) throw;
-      state = (state + last_state) / 2;
-      continue;
+  NonlinearOptions options{.method = NonlinearMethod::anderson, .tolerance = 1e-9, .load_steps = 0};
+  if (options_.method == OnlineMethod::kacanov) options.method = NonlinearMethod::kacanov;
+  int iterations = 0, solves = 0;
+  Vector last_state;
+  NonlinearContact contact;
+  contact.advice = "reduce again with -multiplier_reduction condensed";
+  contact.solve = [&](Vector &state) {
+    for (;; state = (state + last_state) / 2) {
+      try {
+        solve_pair(state, answer);
+        break;
+      } catch (const Error &) {
+        if (last_state.size() == 0 || ++solves == options.max_steps) throw;
+      }
     }
     last_state = state;
     iterations += answer.iterations;
-    images.push_back(model_.contact.trace * answer.u);
-    const Vector change = images.back() - state;
-    const bool settled = change.norm() <= tolerance * images.back().norm() && last_x.size() > 0 &&
-                         (answer.lambda - last_x).norm() <= tolerance * answer.lambda.norm();
-    if (settled) {
-      answer.iterations = iterations;
-      answer.contraction = last_change > 0 ? change.norm() / last_change : 0;
-      assemble(contact_, answer.mu, {images.back()}, answer.contact);
-      return;
-    }
-    last_x = answer.lambda;
-    last_change = change.norm();
-    if (!accelerates) {
-      state = std::exchange(images, {}).back();
-      continue;
-    }
-    const Vector shares = anderson.combine(change);
-    if (std::ssize(images) > shares.size()) images.erase(images.begin());
-    state.setZero();
-    for (Index j = 0; j < shares.size(); ++j)
-      state += shares[j] * images[j];
-  }
-  throw failure("the reduced condition that follows the displacement does not settle in " +
-                std::to_string(most_steps) +
-                " steps: reduce again with -multiplier_reduction condensed");
+    return Iterate{.x = answer.lambda, .u = model_.contact.trace * answer.u};
+  };
+  const Vector rest = undeformed(contact_, scene_, answer.mu);
+  const NonlinearResult found = solve_nonlinear(contact, {rest, {}}, options);
+  if (!found.converged) throw failure(found.reason);
+  answer.iterations = iterations;
+  answer.contraction = found.rate;
+  assemble(contact_, answer.mu, {found.state}, answer.contact);
 }
 
 void ConeSolver::solve_from_start(ReducedAnswer &answer) {
@@ -212,15 +196,15 @@ std::vector<Index> ConeSolver::known_active(Index sample) const {
 
 void ConeSolver::start(const FullMu &mu) {
   const bool y_stays = model_.body.a.size() == 1 && model_.contact.b.size() == 1;
-  const Start &start = starts_.nearest(parts_of_box(scene_.parameters, mu), [&](Index sample) {
+  const ConeStart &start = starts_.nearest_from(mu, [&](Index sample) {
     const std::vector<Index> active = known_active(sample);
-    if (!active.empty() && !y_stays) return Start{active, {}, y_number_};
+    if (!active.empty() && !y_stays) return ConeStart{active, {}, y_number_};
     const Vector there = model_.made.trained_mu.col(sample);
     ReducedAnswer unused;
     unused.mu = expand(scene_.parameters, {there.begin(), there.end()});
     qp_.start_from(active);
     solve_from_start(unused);
-    Start found{qp_.active(), {}, y_number_};
+    ConeStart found{qp_.active(), {}, y_number_};
     if (y_stays) found.qp = qp_;
     return found;
   });

@@ -5,7 +5,6 @@
 
 #include "rbvi/contact/following.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/text.hpp"
 #include "rbvi/model/free_bodies.hpp"
 
 namespace rbvi {
@@ -25,12 +24,12 @@ double distance_from_rest(const NonlinearContact &problem, const NonlinearResult
 FollowingSolver::FollowingSolver(const ReducedModel &model, const Scene &scene,
                                  const Contact &contact, const QueryOptions &options, bool by_rule)
     : model_(model), scene_(scene), contact_(contact), by_rule_(by_rule),
-      looks_for_others_(options.looks_for_others || by_rule), warm_(options.warm),
+      looks_for_others_(options.looks_for_others || by_rule),
       columns_(laws_of_columns(contact, model.contact.dual_basis)), body_(model, scene),
       at_mu_(body_), evaluated_(model, scene, contact, body_),
       rows_are_identity_(model.contact.dual_basis.isIdentity(0)),
       w_product_(evaluated_.rows() * contact.w_product() * evaluated_.rows().transpose()),
-      starts_(model, scene, options.warm) {
+      starts_(scene.parameters, model.contact.law->starts_mu, options.warm) {
   if (options.method == OnlineMethod::kacanov) steps_.method = NonlinearMethod::kacanov;
   const ContactInterface *nodal = nodal_interface(contact);
   if (nodal != nullptr && rows_are_identity_) nodal_.emplace(nodal->averages());
@@ -38,14 +37,14 @@ FollowingSolver::FollowingSolver(const ReducedModel &model, const Scene &scene,
 
 /// From what the samples predict, or the last query where that is asked for; else, and where there
 /// are several answers, from the undeformed body.
-NonlinearStart FollowingSolver::start(const FullMu &mu) const {
-  NonlinearStart start{{}, by_rule_ ? Vector() : starts_.at(mu)};
-  if (start.x.size() == 0)
-    start.state = undeformed(contact_, scene_, mu);
-  else if (last_state_.size() > 0)
-    start.state = last_state_;
-  else
-    start.state = starts_.predicted(model_.contact.law->states, mu);
+Start FollowingSolver::start(const FullMu &mu) const {
+  const NodalLaw &law = *model_.contact.law;
+  Start start;
+  if (!by_rule_)
+    start = starts_.at([&] {
+      return Start{starts_.fit(law.states, mu), starts_.fit(law.starts, mu)};
+    });
+  if (start.x.size() == 0) start.state = undeformed(contact_, scene_, mu);
   return start;
 }
 
@@ -54,7 +53,7 @@ ReducedAnswer FollowingSolver::solve(const FullMu &mu, Relaxed relaxed) {
   at_mu_.set(mu, relaxed.beta);
   Vector load, unloaded; // half response to it, the displacement without contact
   Compliance &compliance = evaluated_.compliance();
-  NonlinearContact problem{.compliance = compliance,
+  NonlinearContact problem{.compliance = &compliance,
                            .free = Vector::Zero(compliance.size()),
                            .undeformed = undeformed(contact_, scene_, mu),
                            .laws = laws_at(columns_, contact_, mu),
@@ -72,9 +71,8 @@ ReducedAnswer FollowingSolver::solve(const FullMu &mu, Relaxed relaxed) {
       .contact = contact_, .mu = mu, .rows = rows_are_identity_ ? nullptr : &evaluated_.rows()};
   NonlinearResult found =
       solve_following(followed, nodal_ ? &*nodal_ : nullptr, problem, start(mu), options);
-  if (!(found.residual <= query_residual_limit))
-    throw failure("the law of contact and friction is met to " + short_number(found.residual) +
-                  " only: reduce again with more training parameters");
+  check_residual(found.residual, query_residual_limit,
+                 ": reduce again with more training parameters");
   ReducedAnswer answer;
   answer.mu = mu;
   if (looks_for_others_) answer.to_other = distance_from_rest(problem, found, options);
@@ -100,8 +98,7 @@ ReducedAnswer FollowingSolver::solve(const FullMu &mu, Relaxed relaxed) {
   answer.contraction = found.rate;
   answer.lambda = std::move(found.x);
   answer.start = std::move(found.start);
-  starts_.keep(answer.start);
-  if (warm_) last_state_ = std::move(found.state);
+  starts_.keep({std::move(found.state), answer.start});
   return answer;
 }
 

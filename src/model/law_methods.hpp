@@ -4,7 +4,6 @@
 #include "rbvi/method/nonlinear.hpp"
 #include "rbvi/model/law_problem.hpp"
 #include "rbvi/model/law_solver.hpp"
-#include "rbvi/model/sample_starts.hpp"
 
 namespace rbvi {
 
@@ -21,9 +20,10 @@ public:
   LawProblem &problem() { return problem_; }
 
 private:
+  const ReducedModel &model_;
   const bool by_rule_, looks_for_others_;
   LawProblem problem_;
-  LawStarts starts_;
+  Starts<Vector> starts_; ///< FrictionResult::start
 };
 
 /// At every node, contact that follows the displacement.
@@ -34,12 +34,12 @@ public:
   ReducedAnswer solve(const FullMu &mu, Relaxed relaxed) override;
 
 private:
-  NonlinearStart start(const FullMu &mu) const;
+  Start start(const FullMu &mu) const;
 
   const ReducedModel &model_;
   const Scene &scene_;
   const Contact &contact_;
-  const bool by_rule_, looks_for_others_, warm_;
+  const bool by_rule_, looks_for_others_;
   const ColumnLaws columns_; ///< of the dual basis
   const ReducedBody body_;
   BodyAtMu at_mu_;
@@ -47,8 +47,7 @@ private:
   std::optional<NodalCompliance> nodal_;
   const bool rows_are_identity_; ///< of evaluated_
   const SparseMatrix w_product_; ///< of the columns of the dual basis
-  LawStarts starts_;
-  Vector last_state_;
+  Starts<Start> starts_;
   NonlinearOptions steps_{.economical = true};
 };
 

@@ -1,6 +1,5 @@
 #include "rbvi/model/law_problem.hpp"
 
-#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/model/free_bodies.hpp"
 
@@ -88,31 +87,24 @@ AtAllNodes LawProblem::at_all_nodes(const LawAtMu &law, const Vector &x) {
   return result;
 }
 
+double LawProblem::residual(const LawAtMu &law, const Vector &x, const Vector &w) const {
+  const Vector &g = contact_->g();
+  return residual_of_laws(law.laws, g, x, w,
+                          ((law.q - g).cwiseAbs() + (w - law.q).cwiseAbs()).maxCoeff());
+}
+
 void LawProblem::displace(ReducedAnswer &answer) const {
+  if (answer.left.size() > 0) {
+    answer.residual = residual(law_, answer.lambda, answer.left);
+    check_residual(answer.residual, query_residual_limit,
+                   ": reduce again with more training parameters");
+  }
   for (const Index column : edge_)
     if (answer.lambda[column] != 0)
       throw failure("contact reaches the edge of the nodes that the model has multipliers at: " +
                     std::string(keeps_more));
   contact_->move(at_mu_, answer);
   if (law_.unloaded.size() > 0) answer.u += law_.unloaded;
-}
-
-LawStarts::LawStarts(const ReducedModel &model, const Scene &scene, bool warm)
-    : model_(model), scene_(scene), warm_(warm),
-      samples_(parts_of_box(scene.parameters, model.contact.law->starts_mu)) {}
-
-Vector LawStarts::predicted(const Matrix &of_samples, const FullMu &mu) const {
-  return local_fit(of_samples, samples_, parts_of_box(scene_.parameters, mu));
-}
-
-Vector LawStarts::at(const FullMu &mu) const {
-  if (last_.size() > 0) return last_;
-  if (samples_.cols() == 0) return {};
-  return predicted(model_.contact.law->starts, mu);
-}
-
-void LawStarts::keep(const Vector &start) {
-  if (warm_) last_ = start;
 }
 
 } // namespace rbvi

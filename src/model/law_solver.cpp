@@ -14,29 +14,30 @@ bool has_several_answers(const ReducedModel &model) {
 
 NodeLawSolver::NodeLawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
                              const QueryOptions &options, bool by_rule)
-    : by_rule_(by_rule || rests_at_start(model, scene)),
+    : model_(model), by_rule_(by_rule || rests_at_start(model, scene)),
       looks_for_others_(options.looks_for_others || by_rule), problem_(model, scene, contact),
-      starts_(model, scene, options.warm) {}
+      starts_(scene.parameters, model.contact.law->starts_mu, options.warm) {}
 
 void NodeLawSolver::solve_at_nodes(const LawAtMu &law, ReducedAnswer &answer) {
   ReducedContact &contact = problem_.contact();
-  Vector start = answer.start.size() > 0 ? answer.start : starts_.at(answer.mu);
+  Vector start = answer.start;
+  if (start.size() == 0)
+    start = starts_.at([&] { return starts_.fit(model_.contact.law->starts, answer.mu); });
   for (Index i = 0; i < start.size(); ++i)
     if (start[i] > 0 && !contact.faces(i)) start[i] = 0;
   // Where springs of free bodies change, an answer is continued from the one before.
   const bool continues = answer.motions && answer.start.size() > 0;
   FrictionSolver &friction = problem_.friction();
   FrictionAnswer found = friction.answer(law.q, start, by_rule_ && !continues);
-  if (!found.converged || !(found.residual <= query_residual_limit))
+  if (!found.converged)
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: " + found.reason);
   if (answer.motions) answer.motions->slope = friction.change(law.by_beta);
-  if (looks_for_others_ && !continues) answer.to_other = distance_to_other_answer(friction, found);
-  if (found.has_others) answer.to_other = std::max(answer.to_other, least_distance);
+  answer.to_other = distance_seen(friction, found, looks_for_others_ && !continues);
   answer.energy = 0.5 * (found.x.dot(found.w - law.q) - law.load.squaredNorm());
-  answer.residual = found.residual;
   answer.iterations += found.iterations;
   answer.lambda = std::move(found.x);
+  answer.left = std::move(found.w);
   answer.start = std::move(found.start);
 }
 

@@ -1,7 +1,6 @@
 #include "rbvi/model/nitsche_solver.hpp"
 
 #include "nitsche_system.hpp"
-#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/model/packed.hpp"
@@ -52,6 +51,7 @@ ReducedNitsche::ReducedNitsche(const ReducedModel &model, NitscheLayer layer,
                                const QueryOptions &options)
     : model_(model), layer_(std::move(layer)), body_(model, layer_.scene),
       consistency_(model.contact.nitsche->consistency, layer_.cells),
+      starts_(layer_.scene.parameters, model.contact.nitsche->starts_mu),
       from_rest_(options.method == OnlineMethod::newton) {
   system_ =
       std::make_unique<System>(model, layer_.cells, points_of(*model.contact.nitsche, layer_));
@@ -78,13 +78,6 @@ ReducedNitsche::Quadratic ReducedNitsche::quadratic_at(const FullMu &all_paramet
   return result;
 }
 
-Vector ReducedNitsche::predicted(const Matrix &of_samples, const FullMu &all_parameters) const {
-  if (of_samples.cols() == 0) return {};
-  const ParameterSpace &space = layer_.scene.parameters;
-  return local_fit(of_samples, parts_of_box(space, model_.contact.nitsche->starts_mu),
-                   parts_of_box(space, all_parameters));
-}
-
 ReducedAnswer ReducedNitsche::solve(const FullMu &all_parameters, Relaxed) {
   System &system = *system_;
   const NitscheModel &nitsche = *model_.contact.nitsche;
@@ -95,15 +88,15 @@ ReducedAnswer ReducedNitsche::solve(const FullMu &all_parameters, Relaxed) {
   answer.mu = all_parameters;
   if (interpolated_) {
     InterpolatedAnswer found = interpolated_->solve(
-        all_parameters, from_rest_ ? Vector() : predicted(nitsche.starts, all_parameters),
+        all_parameters, from_rest_ ? Vector() : starts_.fit(nitsche.starts, all_parameters),
         system.quadratic.a_gamma, system.quadratic.f);
     system.u = std::move(found.u);
     system.relative = found.residual;
     answer.iterations = found.iterations;
   } else {
     system.set_points(layer_, all_parameters);
-    system.predict(predicted(nitsche.starts, all_parameters),
-                   predicted(nitsche.states, all_parameters));
+    system.predict(starts_.fit(nitsche.starts, all_parameters),
+                   starts_.fit(nitsche.states, all_parameters));
     answer.iterations = system.settle();
   }
   answer.u = system.u;

@@ -16,9 +16,8 @@ namespace {
 
 constexpr double residual_accuracy = 1e-13; ///< of the residual, relative
 constexpr double round_off = 1e-9;          ///< below it the residual may stagnate
-constexpr double bound_accuracy = 1e-12;    ///< change of u by new bounds
 constexpr double shortest_step = 0.125;
-constexpr int most_steps = 100, most_full_steps = 25, most_loops = 60;
+constexpr int most_steps = 100, most_full_steps = 25;
 
 /// The Gauss points beside a cell, as they are known or one by one.
 class FaceOfCell {
@@ -251,16 +250,16 @@ int ReducedNitsche::System::settle() {
     if (const std::optional<int> more = follow_bound()) return *more;
     steps = most_full_steps;
   }
-  FollowingBounds following;
   set_bounds();
-  for (int loop = 0; loop < most_loops; ++loop) {
+  const auto newton = [&](double) {
     const Vector before = u;
     steps += minimise();
-    bounds = following.next(terms.laws, pressures, bounds);
-    (void)residual();
-    if ((u - before).norm() <= bound_accuracy * u.norm() && relative <= round_off) return steps;
-  }
-  throw failure("the bound of friction did not settle in " + std::to_string(most_loops) + " loops");
+    const double size = u.norm();
+    return size == 0 ? 0 : (u - before).norm() / size;
+  };
+  settle_bounds(terms.laws,
+                {newton, [&] { return pressures; }, bounds, residual_accuracy, residual_accuracy});
+  return steps;
 }
 
 } // namespace rbvi

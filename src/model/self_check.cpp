@@ -39,10 +39,11 @@ int queries_of_check(const ReducedModel &model) {
   return static_cast<int>(std::clamp(most * factor * factor * factor, fewest, most));
 }
 
-SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries) {
+SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries,
+                     const QueryOptions &options) {
   const std::vector<Mu> set = set_of_check(model.scene.parameters, queries);
   SelfCheck check;
-  OnlineSolver solver(model, scene);
+  OnlineSolver solver(model, scene, options);
   check.queries = static_cast<int>(set.size());
   check.at_boundary = check.queries - queries;
   double peak = 0;

@@ -197,7 +197,8 @@ void check_answers(Reducing &at) {
   collectively(comm, [&] {
     if (rank_of(comm) != 0) return;
     look_for_other_answers(model, at.problem.scene());
-    model.made.self_check = self_check(model, at.problem.scene(), queries_of_check(model));
+    model.made.self_check = self_check(model, at.problem.scene(), queries_of_check(model),
+                                       {.method = at.options.online_method});
     found = {model.made.self_check.unanswered, model.made.self_check.answered() ? 1 : 0};
   });
   MPI_Bcast(found.data(), 2, MPI_INT, 0, comm);

@@ -50,9 +50,7 @@ MethodResult solve_active_set(FullBody &body, const Operators &op, const Vector 
   } else {
     FrictionSolver friction(columns, op.laws);
     FrictionAnswer found = friction.answer(q, start, options.by_rule);
-    if (options.looks_for_others && found.converged)
-      result.to_other = distance_to_other_answer(friction, found);
-    if (found.has_others) result.to_other = std::max(result.to_other, least_distance);
+    result.to_other = distance_seen(friction, found, options.looks_for_others);
     result.start = std::move(found.start);
     take(std::move(found), result);
   }

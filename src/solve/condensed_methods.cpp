@@ -102,7 +102,7 @@ private:
   /// Without what is measured on it.
   MethodResult refined(FullBody &body, const ContactTask &task);
   Vector start_of(const ContactTask &task) {
-    if (task.near != nullptr) return task.near->start;
+    if (task.near != nullptr) return task.near->start.x;
     const bool columns_are_kept = part_ || body_.count() > 0;
     return columns_are_kept ? Vector() : rough_start(ksp_, problem_, task.op);
   }
@@ -161,9 +161,8 @@ public:
   using OnColumns::OnColumns;
   MethodResult solve(const ContactTask &task) override {
     Operators op = task.op;
-    NonlinearStart start{undeformed(problem_.contact(), problem_.scene(), op.mu), {}};
-    if (task.near != nullptr && !bounds_follow_pressure(op.laws))
-      start = {task.near->state, task.near->start};
+    Start start{undeformed(problem_.contact(), problem_.scene(), op.mu), {}};
+    if (task.near != nullptr && !bounds_follow_pressure(op.laws)) start = task.near->start;
     NonlinearOptions options = options_.nonlinear;
     FollowingResult found = solve_from(start, task, options, op);
     // Steps that change little may leave more of the laws, which a smaller tolerance takes out.
@@ -190,8 +189,10 @@ public:
   void check(const MethodResult &result) const override { require_residual(result, allowed()); }
 
 private:
-  double allowed() const { return std::max(residual_limit, 10 * options_.nonlinear.tolerance); }
-  FollowingResult solve_from(const NonlinearStart &start, const ContactTask &task,
+  double allowed() const {
+    return limit_of_iteration(residual_limit, options_.nonlinear.tolerance);
+  }
+  FollowingResult solve_from(const Start &start, const ContactTask &task,
                              const NonlinearOptions &options, Operators &op) {
     FollowingResult found = solve_following(body_, problem_, op, task.slip, start, options);
     found.result.kkt =

@@ -12,9 +12,7 @@ namespace rbvi {
 
 /// An earlier solution.
 struct Solved {
-  Mu mu;
-  Vector start{};     ///< as FrictionResult::start
-  Vector state{};     ///< where contact follows the displacement
+  Start start{};
   Vector beta{};      ///< HfSolution::beta
   Handle<Vec> u{};    ///< Nitsche's method, as the pressures
   Matrix pressures{}; ///< NitscheSolution::pressures
@@ -24,9 +22,9 @@ struct Solved {
 struct ContactTask {
   const Mu &mu;
   const Operators &op;
-  const Vector &slip;                ///< the history of friction
-  const std::vector<Solved> &solved; ///< all earlier solutions
-  const Solved *near;                ///< the nearest one; null: there is none
+  const Vector &slip;           ///< the history of friction
+  const Starts<Solved> &starts; ///< all earlier solutions
+  const Solved *near;           ///< the nearest one; null: there is none
   bool continues; ///< it is of the same mu and other springs, and its answer is continued
 };
 
@@ -43,7 +41,7 @@ public:
   /// Throws failure, saying what to try, where more is left of the laws than a solution leaves.
   virtual void check(const MethodResult &) const {}
   /// What later solves start from.
-  virtual Solved kept(const Mu &mu, MethodResult &result) const;
+  virtual Solved kept(MethodResult &result) const;
   /// As HighFidelity::share_columns().
   virtual void share_columns(const Groups &, const std::vector<Mu> &) {}
 };

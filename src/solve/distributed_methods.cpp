@@ -13,8 +13,6 @@ namespace rbvi {
 
 namespace {
 
-constexpr double largest_of_uzawa = 1e-2; ///< small steps alone do not tell of an answer
-
 void measure_over_ranks(Problem &problem, const ContactTask &task,
                         const DistributedContact &contact, MethodResult &result) {
   const DualLayout &layout = problem.dual_layout();
@@ -42,7 +40,7 @@ public:
     if (complaint.empty()) return result;
     if (options_.contact == HfContact::eliminated) throw failure(complaint);
     const Operators &op = problem_.assemble(task.mu, otherwise_->begin(task.slip), task.slip);
-    result = otherwise_->solve({task.mu, op, task.slip, task.solved, task.near, task.continues});
+    result = otherwise_->solve({task.mu, op, task.slip, task.starts, task.near, task.continues});
     result.reason += ", condensed because elimination failed: " + complaint;
     return result;
   }
@@ -55,8 +53,8 @@ private:
   MethodResult eliminated(const ContactTask &task, std::string &complaint) {
     try {
       MethodResult result =
-          grids_.solve(task.mu, task.op, task.near == nullptr ? Vector() : task.near->start, 1e-13,
-                       !task.continues);
+          grids_.solve(task.mu, task.op, task.near == nullptr ? Vector() : task.near->start.x,
+                       1e-13, !task.continues);
       if (!result.converged) {
         complaint = result.reason;
         return result;
@@ -100,11 +98,11 @@ public:
     return result;
   }
   void check(const MethodResult &result) const override {
-    if (options_.method == HfMethod::uzawa &&
-        !(result.residual <= std::max(largest_of_uzawa, 10 * options_.uzawa.tolerance)))
-      throw failure("Uzawa's steps are below -uzawa_tolerance, and a KKT residual of " +
-                    short_number(result.residual) +
-                    " is left: lower it, or try -uzawa_accelerated or -hf_method active_set");
+    if (options_.method == HfMethod::uzawa)
+      check_residual(result.residual,
+                     limit_of_iteration(gradient_residual_limit, options_.uzawa.tolerance),
+                     " at steps below -uzawa_tolerance: lower it, or try -uzawa_accelerated or "
+                     "-hf_method active_set");
   }
 
 private:

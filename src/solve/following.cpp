@@ -4,10 +4,10 @@
 namespace rbvi {
 
 FollowingResult solve_following(FactoredBody &body, const Problem &problem, Operators &op,
-                                const Vector &slip, const NonlinearStart &start,
+                                const Vector &slip, const Start &start,
                                 const NonlinearOptions &options) {
   const Contact &contact = problem.contact();
-  NonlinearContact nonlinear{.compliance = body,
+  NonlinearContact nonlinear{.compliance = &body,
                              .free = body.free(op),
                              .undeformed = undeformed(contact, problem.scene(), op.mu),
                              .laws = op.laws,

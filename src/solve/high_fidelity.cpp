@@ -84,52 +84,32 @@ const std::vector<std::string> &hf_method_names() {
 }
 
 void require_residual(const MethodResult &result, double allowed) {
-  if (!(result.residual <= allowed))
-    throw failure("the KKT residual is " + short_number(result.residual) + ", above " +
-                  short_number(allowed) +
-                  ", and refinement leaves that: with an iterative -hf_ksp_type lower "
-                  "-hf_ksp_rtol; else cells, or moduli, are too far apart in size");
+  check_residual(result.residual, allowed,
+                 ", and refinement leaves that: with an iterative -hf_ksp_type lower "
+                 "-hf_ksp_rtol; else cells, or moduli, are too far apart in size");
   if (!(result.u_error <= least_known))
     throw failure("by round-off of the stiffness the displacement may be off by " +
                   short_number(result.u_error) +
                   " of itself: cells, or moduli, are too far apart in size");
 }
 
-Solved ContactMethod::kept(const Mu &mu, MethodResult &result) const {
-  return {.mu = mu,
-          .start = result.start.size() > 0 ? result.start : result.lambda,
-          .state = result.states.empty() ? Vector{} : result.states.back(),
+Solved ContactMethod::kept(MethodResult &result) const {
+  return {.start = {result.states.empty() ? Vector{} : result.states.back(),
+                    result.start.size() > 0 ? result.start : result.lambda},
           .beta = result.beta};
 }
 
 HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
     : problem_(problem), options_(options), ksp_(make_direct_solver(problem.comm(), "hf_")),
-      method_(make_contact_method(problem, options_, ksp_.get())) {}
+      method_(make_contact_method(problem, options_, ksp_.get())),
+      solved_(std::make_unique<Starts<Solved>>(problem.scene().parameters)) {}
 
 HighFidelity::~HighFidelity() = default;
-
-const Solved *HighFidelity::nearest(const Mu &mu) const {
-  const ParameterSpace &space = problem_.scene().parameters;
-  const Solved *nearest = nullptr;
-  double best = 0;
-  for (const Solved &solved : solved_) {
-    double distance = 0;
-    for (int i = 0; i < space.size(); ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      distance += std::pow((mu[k] - solved.mu[k]) / (space.at(i).upper - space.at(i).lower), 2);
-    }
-    if (nearest == nullptr || distance < best) {
-      nearest = &solved;
-      best = distance;
-    }
-  }
-  return nearest;
-}
 
 /// By the method of the options. Throws failure where it does not converge.
 MethodResult HighFidelity::run(const Mu &mu, const Operators &op, const Vector &slip,
                                const Solved *near, bool continues) {
-  MethodResult result = method_->solve({mu, op, slip, solved_, near, continues});
+  MethodResult result = method_->solve({mu, op, slip, *solved_, near, continues});
   if (!result.converged)
     throw failure(result.reason + " (" + std::to_string(result.iterations) + " iterations)");
   return result;
@@ -140,7 +120,7 @@ void HighFidelity::share_columns(const Groups &groups, const std::vector<Mu> &se
 }
 
 void HighFidelity::forget() {
-  solved_.clear();
+  solved_->clear();
 }
 
 HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
@@ -149,8 +129,9 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
   const ContactRows rows = method_->begin(slip);
   const Operators &op = problem_.assemble(mu, rows, slip);
   method_->set(op);
-  MethodResult result = problem_.free_bodies().empty() ? run(mu, op, slip, nearest(mu), false)
-                                                       : run_free(mu, op, rows, slip);
+  const Solved *near = solved_->nearest_added(op.mu);
+  MethodResult result = problem_.free_bodies().empty() ? run(mu, op, slip, near, false)
+                                                       : run_free(mu, op, slip, near);
   tell(result, result.outputs);
   result.u = whole_displacement(problem_, mu, result.free_u.get());
   add_named_outputs(problem_, op.mu, result.u, result.lambda, result.outputs);
@@ -162,7 +143,7 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
   method_->check(result);
   check_balance(problem_, op.mu, result.outputs, std::max(balanced, 10 * result.residual),
                 balanced * of_stresses * size_of_stresses(op, result.free_u.get()));
-  solved_.push_back(method_->kept(mu, result));
+  solved_->add(op.mu, method_->kept(result));
   return std::move(static_cast<HfSolution &>(result));
 }
 

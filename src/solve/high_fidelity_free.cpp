@@ -2,7 +2,6 @@
 // such that forces balance.
 #include "contact_method.hpp"
 
-#include "rbvi/core/error.hpp"
 #include "rbvi/method/balance.hpp"
 #include "rbvi/method/several_answers.hpp"
 #include "rbvi/par/collective.hpp"
@@ -11,41 +10,38 @@ namespace rbvi {
 
 namespace {
 
-/// On bodies that contact alone holds.
-struct FreeForces {
-  Matrix held;  ///< Problem::held_by()
-  Vector terms; ///< sums of the sizes of the loads, as Problem::pushed()
-};
+/// `op`: with all rows of B.
+FreeMotions motions_at(const Problem &problem, const Operators &op) {
+  auto [load, terms] = problem.pushed(op.mu);
+  return {op.laws, problem.held_by(op), std::move(load), std::move(terms)};
+}
 
-FreeForces balanced_forces(const Problem &problem, const Operators &op) {
-  const auto [load, terms] = problem.pushed(op.mu);
-  FreeForces forces{problem.held_by(op), terms};
-  const Vector left = unbalanced_load(op.laws, forces.held, load, terms);
-  if (left.norm() > 0)
-    throw failure(describe(problem.free_bodies(), problem.scene().dim, left) +
-                  ", and is pushed where no contact and no friction can hold it");
-  return forces;
+MotionText text_of(const Problem &problem) {
+  return [&](const Matrix &motions) {
+    return describe(problem.free_bodies(), problem.scene().dim, motions);
+  };
 }
 
 } // namespace
 
 Matrix unresisted_motions(const Problem &problem, const Operators &op) {
-  return unresisted_motions(op.laws, balanced_forces(problem, op).held);
+  const FreeMotions motions = motions_at(problem, op);
+  check_held(motions, text_of(problem));
+  return unresisted_motions(op.laws, motions.held);
 }
 
-MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, ContactRows rows,
-                                    const Vector &slip) {
+MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, const Vector &slip,
+                                    const Solved *near) {
   const std::vector<FreeBody> &bodies = problem_.free_bodies();
-  const int dim = problem_.scene().dim;
-  const Solved *near = nearest(mu);
   Operators all;
   collectively(problem_.comm(), [&] { problem_.assemble_contact(mu, all); });
+  const FreeMotions motions = motions_at(problem_, all);
+  check_held(motions, text_of(problem_));
   // Of several answers with friction that from rest is taken, whatever was solved before.
   const Vector start = near == nullptr || bounds_follow_pressure(all.laws)
                            ? Vector(Vector::Zero(motions_of(bodies)))
                            : near->beta;
-  const auto [held, terms] = balanced_forces(problem_, all);
-  Matrix lengths(start.size(), start.size()); // of the springs by each motion
+  Matrix lengths(start.size(), start.size());
   Index k = 0;
   for (const Handle<Vec> &motion :
        rigid_motions(bodies, problem_.scene(), op.mu, problem_.mesh(), problem_.dofs()))
@@ -55,33 +51,18 @@ MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, ContactRo
   MethodResult result;
   std::optional<Solved> last; // of the springs before
   int iterations = 0;
-  const Balance balance = find_balance(start, [&](const Vector &beta) {
+  const auto solve = [&](const Vector &beta) {
     problem_.relax_springs(beta);
     result = run(mu, op, slip, last ? &*last : near, last.has_value());
     iterations += result.iterations;
-    last = method_->kept(mu, result);
-    const Vector forces = forces_on_motions(all.laws, held, terms, result.lambda);
-    return SpringState{spring_lengths(bodies, result.free_u.get()), forces.maxCoeff() / stiffness};
-  });
+    last = method_->kept(result);
+    return HeldAnswer{&motions, &result.lambda, spring_lengths(bodies, result.free_u.get())};
+  };
+  result.beta = balance_bodies(
+      start, {solve, text_of(problem_), lengths, stiffness,
+              "give them friction or displacements that hold them, or stiffnesses less far apart"});
   problem_.relax_springs(Vector::Zero(start.size()));
-  if (balance.flies)
-    throw failure(describe(bodies, dim, lu_solve(lengths, balance.excess)) +
-                  ", and is pushed on where no contact and no friction can hold it");
-  if (!balance.converged) {
-    const std::string moved = describe(bodies, dim, lu_solve(lengths, balance.excess));
-    throw failure("the forces on bodies that contact alone holds do not balance in " +
-                  std::to_string(balance.solves) + " solves: " + moved +
-                  (moved.empty() ? "" : ": ") +
-                  "give them friction or displacements that hold them, or stiffnesses less far "
-                  "apart");
-  }
-  if (rows == ContactRows::all) static_cast<ContactOperators &>(all) = op;
-  const Matrix loose = loose_motions(all.laws, problem_.held_by(all), result.lambda);
-  if (loose.cols() > 0)
-    throw failure(describe(bodies, dim, loose) +
-                  " at no cost at the answer, where no contact and no friction holds it");
   result.iterations = iterations;
-  result.beta = balance.beta;
   return result;
 }
 

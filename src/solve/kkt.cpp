@@ -47,8 +47,8 @@ KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const V
   const auto [stationarity, displacement] = equilibrium(op, u, reaction.get());
   const Vector excess = op.b * restrict_to(trace, u) - op.g;
   const double stress = lambda.size() > 0 ? lambda.lpNorm<Eigen::Infinity>() : 0;
-  return residual_of(sums_of({op.laws, op.weights, op.g, lambda, excess, displacement, stress}),
-                     op.laws.has_tangents(), stationarity);
+  return residual_of({op.laws, op.weights, op.g, lambda, excess, displacement, stress},
+                     stationarity);
 }
 
 KktResidual kkt_residual(const DistributedContact &contact, const Operators &op, Vec u,

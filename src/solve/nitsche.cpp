@@ -3,7 +3,6 @@
 #include "contact_method.hpp"
 #include "nitsche_system.hpp"
 #include "rbvi/contact/force_balance.hpp"
-#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/solve/vectors.hpp"
@@ -14,12 +13,8 @@ namespace rbvi {
 
 namespace {
 
-constexpr double bound_accuracy = 1e-12; ///< change of u by new bounds of friction, relative
-constexpr double round_off = 1e-9;       ///< of that change: below it it may stagnate
-constexpr double stagnant = 0.9;         ///< of the last change
-constexpr double vanishing = 1e-9;       ///< of the start: below it terms count as zero
-constexpr double of_loads = 0.1;         ///< below it their residual is round-off of the loads
-constexpr int most_outer_iterations = 60;
+constexpr double vanishing = 1e-9; ///< of the start: below it terms count as zero
+constexpr double of_loads = 0.1;   ///< below it their residual is round-off of the loads
 
 class ByNitsche : public ContactMethod {
 public:
@@ -32,34 +27,23 @@ public:
   }
   void set(const Operators &) override {}
   MethodResult solve(const ContactTask &task) override;
-  Solved kept(const Mu &mu, MethodResult &result) const override {
-    return {.mu = mu, .u = std::move(result.free_u), .pressures = std::move(result.pressures)};
+  Solved kept(MethodResult &result) const override {
+    return {.u = std::move(result.free_u), .pressures = std::move(result.pressures)};
   }
 
 private:
-  Matrix predicted_pressures(const ContactTask &task) const;
-
   Problem &problem_;
   NitscheSolver solver_;
 };
 
-Matrix ByNitsche::predicted_pressures(const ContactTask &task) const {
-  const ParameterSpace &space = problem_.scene().parameters;
-  const auto count = std::ssize(task.solved);
-  Matrix pressures(task.solved.front().pressures.size(), count), points(space.size(), count);
-  for (Index p = 0; p < count; ++p) {
-    const Solved &solved = task.solved[p];
-    pressures.col(p) = solved.pressures.reshaped();
-    points.col(p) = parts_of_box(space, expand(space, solved.mu));
-  }
-  return local_fit(pressures, points, parts_of_box(space, expand(space, task.mu)))
-      .reshaped(pressures.rows() / 2, 2);
-}
-
 MethodResult ByNitsche::solve(const ContactTask &task) {
   const Operators &op = task.op;
   NitscheStart start{};
-  if (task.near != nullptr) start = {task.near->u.get(), predicted_pressures(task)};
+  if (task.near != nullptr) {
+    const Vector pressures = task.starts.fit_added(
+        [](const Solved &solved) { return Vector(solved.pressures.reshaped()); }, op.mu);
+    start = {task.near->u.get(), pressures.reshaped(pressures.size() / 2, 2)};
+  }
   NitscheSolution found = solver_.solve(op, task.near == nullptr ? nullptr : &start);
   const NitscheLayer layer = layer_of(problem_.contact());
   MethodResult result;
@@ -125,37 +109,26 @@ NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheStart *st
 void NitscheSolver::run(bool nested, Vec u, NitscheSolution &result) {
   NitscheSystem &system = *system_;
   const Handle<Vec> before = like(u);
-  const std::vector<NitscheLaw> laws = laws_at_points(system.faces);
-  FollowingBounds following;
-  const double accuracy = system.accuracy;
-  const bool loose = nested && !options_.plain_steps && !loop_end;
-  system.tolerance = loose ? std::max(1e-3, accuracy) : accuracy;
-  double last_change = 1;
-  for (;;) {
+  const auto newton = [&](double tolerance) {
+    system.tolerance = tolerance;
     RBVI_CALL(VecCopy(u, before.get()));
     result.iterations += system.newton(u, result.reason);
-    ++result.outer_iterations;
     if (loop_end) loop_end(system.on_layer(u), system.bounds);
-    if (!nested) return;
-    const Vector used = system.bounds;
-    system.bounds =
-        following.next(laws, nitsche_pressures(system.faces, system.on_layer(u)), system.bounds);
     RBVI_CALL(VecAXPY(before.get(), -1, u));
-    const double size = norm(u), change = size == 0 ? 0 : norm(before.get()) / size;
-    const bool rests = change <= round_off && change > stagnant * last_change;
-    // The first bounds are those of the start, not of u.
-    const bool settled = result.outer_iterations > 1 && (change <= bound_accuracy || rests);
-    if (settled && system.tolerance <= accuracy) {
-      system.bounds = used; // under which forces balance
-      return;
-    }
-    last_change = change;
-    system.tolerance = std::clamp(1e-2 * change, accuracy, system.tolerance);
-    if (result.outer_iterations == most_outer_iterations)
-      throw failure("the bound of friction did not settle in " +
-                    std::to_string(most_outer_iterations) + " steps: it still changes u by " +
-                    short_number(change));
+    const double size = norm(u);
+    return size == 0 ? 0 : norm(before.get()) / size;
+  };
+  result.outer_iterations = 1;
+  if (!nested) {
+    newton(system.accuracy);
+    return;
   }
+  const double accuracy = system.accuracy;
+  const bool loose = !options_.plain_steps && !loop_end;
+  const auto pressures = [&] { return nitsche_pressures(system.faces, system.on_layer(u)); };
+  result.outer_iterations = settle_bounds(
+      laws_at_points(system.faces),
+      {newton, pressures, system.bounds, loose ? std::max(1e-3, accuracy) : accuracy, accuracy});
 }
 
 std::unique_ptr<ContactMethod> make_nitsche_method(Problem &problem, const HfOptions &options) {

@@ -188,26 +188,6 @@ std::vector<BenchRow> bench_parts(Problem &problem, const std::vector<Sample> &t
   return rows;
 }
 
-namespace {
-
-/// The start from the nearest of the first `count` truths; none: from rest.
-NonlinearStart nearest_start(const Problem &problem, const FullMu &at_mu,
-                             const std::vector<Sample> &truths, std::size_t count) {
-  NonlinearStart start{undeformed(problem.contact(), problem.scene(), at_mu), {}};
-  const ParameterSpace &space = problem.scene().parameters;
-  const Vector here = parts_of_box(space, at_mu);
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < count; ++k) {
-    const double distance = (parts_of_box(space, expand(space, truths[k].mu)) - here).norm();
-    if (distance >= least) continue;
-    least = distance;
-    start = {truths[k].states.rightCols(1), truths[k].lambda};
-  }
-  return start;
-}
-
-} // namespace
-
 std::vector<BenchRow> bench_iterations(Problem &problem, const std::vector<Sample> &truths) {
   const Handle<KSP> ksp = make_direct_solver(problem.comm(), "hf_");
   FactoredBody body(ksp.get(), problem.trace(), ColumnsLast::for_all_mu);
@@ -216,11 +196,18 @@ std::vector<BenchRow> bench_iterations(Problem &problem, const std::vector<Sampl
     NonlinearOptions options;
     options.method = method;
     std::vector<double> result;
+    const ParameterSpace &space = problem.scene().parameters;
+    Starts<Start> solved(space);
     for (std::size_t k = warm ? 1 : 0; k < truths.size(); ++k) {
+      if (warm)
+        solved.add(expand(space, truths[k - 1].mu),
+                   {truths[k - 1].states.rightCols(1), truths[k - 1].lambda});
       Operators op = problem.assemble(truths[k].mu);
       RBVI_CALL(KSPSetOperators(ksp.get(), op.a, op.a));
       RBVI_CALL(KSPSetUp(ksp.get()));
-      const NonlinearStart start = nearest_start(problem, op.mu, truths, warm ? k : 0);
+      const Start *near = solved.nearest_added(op.mu);
+      const Start start =
+          near ? *near : Start{undeformed(problem.contact(), problem.scene(), op.mu), {}};
       Handle<Vec> u;
       RBVI_CALL(VecDuplicate(op.f, u.put()));
       const double begin = MPI_Wtime();

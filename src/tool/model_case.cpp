@@ -103,11 +103,11 @@ ReducedModel model_of_run(MPI_Comm world, const OfflineOptions &options) {
       throw bad_input(file.string() + " does not exist: make it by rbvi offline first");
     model = read_model(file, *options.registry);
   });
-  if (options.online_method == OnlineMethod::exact)
+  if (options.reduce.online_method == OnlineMethod::exact)
     model.made.settings.erase("online_method");
   else
     model.made.settings["online_method"] =
-        online_method_names()[static_cast<std::size_t>(options.online_method)];
+        online_method_names()[static_cast<std::size_t>(options.reduce.online_method)];
   return model;
 }
 

@@ -246,9 +246,6 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const OfflineOption
       write_fields(work.world_problem(), fields, model, options.out / "model.h5");
     collectively(world, [&] {
       if (rank_of(world) != 0) return;
-      SelfCheck &check = model.made.self_check; // not yet by the method of its queries
-      if (check.queries > 0 && options.online_method != OnlineMethod::exact)
-        check = self_check(model, model.scene, check.queries - check.at_boundary);
       write_model(model, options.out / "model.h5");
       check_written(model, options.out / "model.h5", options.registry.get());
       write_sample_table(options.out / "samples.csv", options.scene.parameters, sweep.samples);

@@ -200,7 +200,7 @@ ToolOptions read_values(const std::vector<std::string> &names, const GivenCase &
   const ReductionWay &way = way_of(options.scene, reduction);
   reduction = way.reduction;
   check_rules(options);
-  if (!is_of(use::online, options)) options.online_method = OnlineMethod::exact;
+  if (!is_of(use::online, options)) options.reduce.online_method = OnlineMethod::exact;
   if (way.law && !is_given("cone_type"))
     options.reduce.cone.type = ConeType::mcpg; // hybrid has functions of either sign
   return options;

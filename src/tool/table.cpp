@@ -28,7 +28,7 @@ const ReductionWay &way_for(const OfflineOptions &options) {
 }
 
 bool has_online_method(const OfflineOptions &options) {
-  switch (options.online_method) {
+  switch (options.reduce.online_method) {
   case OnlineMethod::exact:
     return true;
   case OnlineMethod::uzawa:
@@ -95,7 +95,8 @@ const Use online{nullptr, has_online_method,
                  "follows the displacement (kacanov), or for -nitsche_quadrature interpolated "
                  "(newton)"};
 const Use not_exact{
-    nullptr, [](const OfflineOptions &o) { return o.online_method != OnlineMethod::exact; }, ""};
+    nullptr, [](const OfflineOptions &o) { return o.reduce.online_method != OnlineMethod::exact; },
+    ""};
 
 } // namespace use
 
@@ -167,7 +168,7 @@ std::vector<Option> of_runs(ToolOptions &o) {
                            "linearised at the state before (A.7), not accelerated",
                            "-nitsche_quadrature interpolated: Newton's method (4.79) as published, "
                            "from u_0 = 0 and without a rescue"}),
-                      o.online_method,
+                      o.reduce.online_method,
                       "how the model answers, in verify and bench, and later in rbvi-online"))),
       of_command(
           rising("bench_growth", refinements, o.growth,

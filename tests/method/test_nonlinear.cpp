@@ -40,7 +40,7 @@ struct Beads {
     NonlinearContact contact{
         [this](const Vector &state, Linearised &l) { linearise(state, l); },
         [this](const Vector &state, const Vector &x) { return curvature(state, x); },
-        columns,
+        &columns,
         free,
         Vector::Zero(2 * n),
         uniform_laws(n, friction ? 2 : 1, bound),
@@ -264,7 +264,7 @@ TEST(Nonlinear, LoadStepsCureAStartThatFails) {
     if (moved > longest && state.norm() > 0) throw failure("torn");
     beads.linearise(state, l);
   };
-  const NonlinearStart rest{Vector::Zero(2 * beads.count()), {}};
+  const Start rest{Vector::Zero(2 * beads.count()), {}};
   NonlinearOptions options;
   const NonlinearResult found = solve_nonlinear(contact, rest, options);
   ASSERT_TRUE(found.converged) << found.reason;
@@ -365,7 +365,7 @@ TEST(Nonlinear, SegmentsThatDoNotSettleAreReported) {
     beads.linearise(state, l);
     l.segments = {std::min(steps++, settled) % 2};
   };
-  const NonlinearStart rest{Vector::Zero(2 * beads.count()), {}};
+  const Start rest{Vector::Zero(2 * beads.count()), {}};
   const NonlinearResult still = solve_nonlinear(contact, rest, options);
   ASSERT_TRUE(still.converged) << still.reason;
   EXPECT_EQ(still.segments_moved, 3);

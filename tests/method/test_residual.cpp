@@ -1,6 +1,8 @@
 // What is left of the conditions at an answer, and its scale.
 #include "rbvi/method/residual.hpp"
 
+#include "rbvi/core/error.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -73,6 +75,65 @@ TEST(Residual, ZeroGapsAreSeenBesideWhatLoadsMove) {
   EXPECT_LE(rows.residual().largest(), 1e-11);
   rows.excess[0] = 1e-10;
   EXPECT_GT(rows.residual().feasibility, residual_limit);
+}
+
+/// A u + B^T x = f and B u <= g of one function or several, rows of weight 1.
+double residual(const Vector &au, const Vector &btx, const Vector &f, const Vector &bu,
+                const Vector &g, const Vector &x, Index equations = 0) {
+  const NodeLaws laws = uniform_laws(x.size(), 1, {});
+  const Vector weights = Vector::Ones(x.size()), excess = bu - g;
+  return residual_of({laws, weights, g, x, excess, 0, 0, equations},
+                     {(au + btx - f).norm(), f.norm() + btx.norm()})
+      .largest();
+}
+
+TEST(Residual, SeesEachConditionOfAPair) {
+  const Vector one = Vector::Constant(1, 1), none = 0 * one, f = 2 * one;
+  EXPECT_EQ(residual(one, one, f, one, one, one), 0);
+  EXPECT_EQ(residual(one, none, f, one, one, one), 0.5);
+  EXPECT_EQ(residual(one, one, f, 4 * one, 3 * one, none), 0.25);
+  EXPECT_EQ(residual(one, one, f, 3 * one, 4 * one, one), 0.25);
+  EXPECT_EQ(residual(none, none, none, none, none, none), 0);
+  const Vector two = Vector::Ones(2);
+  for (const Index entry : {0, 1}) {
+    Vector bad = two;
+    bad[entry] = nan;
+    EXPECT_TRUE(std::isnan(residual(bad, -two, two, two, two, two)));
+    EXPECT_TRUE(std::isnan(residual(two, -two, two, bad, two, two)));
+    EXPECT_TRUE(std::isnan(residual(two, -two, two, two, bad, two)));
+    EXPECT_TRUE(std::isnan(residual(two, -two, two, two, two, bad)));
+  }
+}
+
+TEST(Residual, OfAnEquationSeesAnOpenGap) {
+  const Vector one = Vector::Constant(1, 1), none = 0 * one, two = Vector::Constant(1, 2);
+  // B u = 3 < 4 with x = 0: fine for a cone, no contact for a mode.
+  EXPECT_EQ(residual(one, none, one, 3 * one, 4 * one, none), 0);
+  EXPECT_EQ(residual(one, none, one, 3 * one, 4 * one, none, 1), 0.25);
+  // The last rows alone are equations.
+  const Vector bu{{0, 4}}, g{{1, 4}}, x{{0, -7}}, zero = Vector::Zero(2);
+  EXPECT_EQ(residual(two, 0 * two, two, bu, g, x, 1), 0);
+  EXPECT_EQ(residual(two, 0 * two, two, bu, g, x, 2), 0.25);
+  EXPECT_EQ(residual(two, 0 * two, two, bu.reverse(), g.reverse(), zero, 1), 0.25);
+  EXPECT_EQ(residual(two, 0 * two, two, g, g, x.reverse(), 1), 1) << "a pull";
+}
+
+/// A node that slips forwards under half its bound: the traction has the size of its bound or not.
+TEST(Residual, OfLawsAloneSeesFriction) {
+  const NodeLaws laws = uniform_laws(1, 2, {.coefficient = 0.5});
+  const Vector g{{1, 0}}, slips{{0, -0.1}};
+  EXPECT_EQ(residual_of_laws(laws, g, Vector{{2, 1}}, slips, 1), 0);
+  EXPECT_GT(residual_of_laws(laws, g, Vector{{2, 0.5}}, slips, 1), 1e-3);
+  EXPECT_GT(residual_of_laws(laws, g, Vector{{2, 1.5}}, slips, 1), 0.1);
+  EXPECT_EQ(residual_of_laws(laws, g, Vector{{2, 0.5}}, Vector::Zero(2), 1), 0) << "sticks";
+}
+
+TEST(Residual, AboveItsLimitIsAFailureThatSaysWhatToTry) {
+  EXPECT_NO_THROW(check_residual(1e-11, residual_limit, ": try this"));
+  EXPECT_THROW(check_residual(nan, residual_limit, ": try this"), Error);
+  EXPECT_THROW(check_residual(1e-9, residual_limit, ": try this"), Error);
+  EXPECT_EQ(limit_of_iteration(1e-10, 1e-7), 1e-6);
+  EXPECT_EQ(limit_of_iteration(1e-10, 1e-13), 1e-10);
 }
 
 } // namespace

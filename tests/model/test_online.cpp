@@ -170,19 +170,6 @@ TEST(OnlineSolver, TheBoxIsKeptUnlessExtrapolating) {
   EXPECT_NO_THROW(solver.solve({0.25, 0, 0}, true));
 }
 
-TEST(KktResidual, SeesEachCondition) {
-  const Vector au = Vector::Constant(1, 1), btx = Vector::Constant(1, 1),
-               f = Vector::Constant(1, 2), one = Vector::Constant(1, 1);
-  EXPECT_EQ(kkt_residual({au, btx, f, one, one, one}), 0);
-  EXPECT_EQ(kkt_residual({au, 0 * btx, f, one, one, one}), 0.5);
-  EXPECT_EQ(kkt_residual({au, btx, f, 4 * one, 3 * one, 0 * one}), 0.25);
-  EXPECT_EQ(kkt_residual({au, btx, f, 3 * one, 4 * one, one}), 0.25);
-  EXPECT_EQ(kkt_residual({0 * au, 0 * au, 0 * au, 0 * one, 0 * one, 0 * one}), 0);
-  const Vector round_off = Vector::Constant(1, 1e-16); // of terms of size 1, which cancel
-  EXPECT_EQ(kkt_residual({au, btx, f, round_off, 0 * one, one}), 1);
-  EXPECT_NEAR(kkt_residual({au, btx, f, round_off, 0 * one, one, 0, 1}), 1e-13, 1e-18);
-}
-
 /// (B.36) against the cotangent formula: int |grad phi_0|^2 = |opposite edge|^2 / (4 area).
 TEST(AffineCoefficients, ReassembleTheSampledEntries) {
   const Scene scene = make_scene("membrane_obstacle");
@@ -206,18 +193,6 @@ TEST(AffineCoefficients, ReassembleTheSampledEntries) {
     EXPECT_NEAR(terms.interpolation.row(entry).dot(theta), expected, 1e-12 * expected);
   }
   EXPECT_EQ(affine_coefficients({}, scene.f, scene, mu).size(), 0);
-}
-
-TEST(KktResidual, IsNoNumberWhereAnOperatorIsNone) {
-  const Vector two = Vector::Ones(2);
-  for (const Index entry : {0, 1}) {
-    Vector bad = two;
-    bad[entry] = std::nan("");
-    EXPECT_TRUE(std::isnan(kkt_residual({bad, -two, two, two, two, two})));
-    EXPECT_TRUE(std::isnan(kkt_residual({two, -two, two, bad, two, two})));
-    EXPECT_TRUE(std::isnan(kkt_residual({two, -two, two, two, bad, two})));
-    EXPECT_TRUE(std::isnan(kkt_residual({two, -two, two, two, two, bad})));
-  }
 }
 
 TEST(Outputs, AreIntegralsOverTheContactRegion) {

@@ -73,20 +73,6 @@ TEST(FreeModes, MoreOfThemThanUnknownsContradict) {
   }
 }
 
-TEST(FreeModes, KktResidualSeesAnOpenGap) {
-  const Vector one = Vector::Constant(1, 1), two = Vector::Constant(1, 2);
-  // B u = 3 < 4 with x = 0: fine for a cone, no contact for a mode.
-  EXPECT_EQ(kkt_residual({one, 0 * one, one, 3 * one, 4 * one, 0 * one}), 0);
-  EXPECT_EQ(kkt_residual({one, 0 * one, one, 3 * one, 4 * one, 0 * one, 1}), 0.25);
-  // The last rows alone are equations.
-  const Vector bu{{0, 4}}, g{{1, 4}}, x{{0, -7}};
-  EXPECT_EQ(kkt_residual({two, 0 * two, two, bu, g, x, 1}), 0);
-  EXPECT_EQ(kkt_residual({two, 0 * two, two, bu, g, x, 2}), 0.25);
-  const Vector none = Vector::Zero(2);
-  EXPECT_EQ(kkt_residual({two, 0 * two, two, bu.reverse(), g.reverse(), none, 1}), 0.25);
-  EXPECT_EQ(kkt_residual({two, 0 * two, two, g, g, x.reverse(), 1}), 1) << "a pull";
-}
-
 /// Node 0 takes the pressure of the first generator, node 1 that of the last function.
 Matrix two_nodes(const ReducedModel &model) {
   Matrix basis = Matrix::Zero(model.contact.dual_basis.rows(), model.contact.generators);

@@ -2,7 +2,6 @@
 #include "synthetic.hpp"
 
 #include "rbvi/io/parameter_sets.hpp"
-#include "rbvi/model/sample_starts.hpp"
 #include "rbvi/model/training_samples.hpp"
 
 #include <gtest/gtest.h>
@@ -73,29 +72,6 @@ TEST(StoredStarts, AreThoseThatAreFoundWhenAskedFor) {
     EXPECT_THROW(check_model(stored), Error) << "of other samples";
     EXPECT_EQ(leading(stored, 9, 8).contact.starts.size(), 0) << "answers of another model";
   }
-}
-
-TEST(SampleStarts, AreFoundOnceAtTheNearestSample) {
-  const ParameterSpace space = all_free({{"a", "", 0, 1, 0.5}, {"b", "", 0, 10, 5}});
-  const Matrix samples{{0.1, 0.9, 0.5}, {5, 5, 9}};
-  SampleStarts<int> starts(space, samples);
-  int asked = 0;
-  const auto at = [&](double a, double b) {
-    return starts.nearest(Vector{{a, b / 10}}, [&](Index k) {
-      ++asked;
-      if (k == 2) throw failure("no answer");
-      return static_cast<int>(10 + k);
-    });
-  };
-  EXPECT_EQ(at(0.2, 6), 10);
-  EXPECT_EQ(at(0.8, 5), 11);
-  EXPECT_EQ(at(0, 4), 10);
-  EXPECT_EQ(asked, 2);
-  EXPECT_EQ(at(0.5, 10), 0) << "from rest";
-  EXPECT_EQ(at(0.5, 9), 0);
-  EXPECT_EQ(asked, 3);
-  SampleStarts<int> none(space, Matrix(2, 0));
-  EXPECT_EQ(none.nearest(Vector::Zero(2), [](Index) { return 1; }), 0);
 }
 
 } // namespace

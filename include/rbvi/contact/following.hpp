@@ -24,7 +24,7 @@ struct FollowedContact {
 /// `problem`: all but its condition, which is set; `nodal`: where contact is nodal, for steps on
 /// nodes, or null. Throws failure, saying what to try, where the iteration does not converge.
 NonlinearResult solve_following(FollowedContact &contact, NodalCompliance *nodal,
-                                NonlinearContact &problem, const NonlinearStart &start,
+                                NonlinearContact &problem, const Start &start,
                                 const NonlinearOptions &options);
 
 } // namespace rbvi

@@ -16,6 +16,7 @@
 #include "rbvi/contact/support_outputs.hpp"
 #include "rbvi/core/outputs.hpp"
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -118,6 +119,18 @@ private:
   std::vector<Index> between_; ///< points where the threshold turns
   Matrix slopes_;              ///< of their excesses by their bounds
 };
+
+/// Newton's method with bounds frozen, in a loop in which they follow u (4.63).
+struct BoundLoops {
+  /// With the bounds as they are, until the residual is at most `tolerance`; the change of u, as a
+  /// part of it.
+  std::function<double(double tolerance)> newton;
+  std::function<Matrix()> pressures; ///< P_n and P_tau at u
+  Vector &bounds;
+  double loosest, accuracy; ///< tolerances: of the first loop, of the last one
+};
+/// Until new bounds do not change u. Returns the loops. Throws failure where there is no end.
+int settle_bounds(std::span<const NitscheLaw> laws, const BoundLoops &loops);
 
 /// The terms at P points as functions of their pressures, P x 2, whatever unknowns these are
 /// functions of. `bounds` of friction: P of them, or none.

@@ -14,8 +14,18 @@
 #include "rbvi/method/node_laws.hpp"
 
 #include <functional>
+#include <string>
 
 namespace rbvi {
+
+/// What holds k free motions Z at an answer, and what pushes along them.
+struct FreeMotions {
+  NodeLaws laws;
+  Matrix held;        ///< B Z, rows of the laws x k
+  Vector load, terms; ///< Z^T F without the springs, and the sums of the sizes of its terms
+  /// Of the multipliers by what springs are relaxed at, while active sets stay; empty: not known.
+  Matrix slope{};
+};
 
 /// Of springs at an answer: their lengths, and how long all forces on the bodies would make them.
 struct SpringState {
@@ -50,5 +60,31 @@ Vector unbalanced_load(const NodeLaws &laws, const Matrix &held, const Vector &l
 /// sum has round-off of.
 Vector forces_on_motions(const NodeLaws &laws, const Matrix &held, const Vector &terms,
                          const Vector &x);
+
+/// "the body can move along (1, 0)", of motions x any number; for messages.
+using MotionText = std::function<std::string(const Matrix &motions)>;
+
+/// Throws failure where loads push along motions that no pressure and no friction balance.
+void check_held(const FreeMotions &motions, const MotionText &describe);
+
+/// Of bodies with springs relaxed at some beta; what it refers to lives until the next answer.
+struct HeldAnswer {
+  const FreeMotions *motions;
+  const Vector *x; ///< multipliers
+  Vector lengths;  ///< of the springs
+};
+
+/// Bodies that contact alone holds, full or reduced.
+struct HeldBodies {
+  std::function<HeldAnswer(const Vector &beta)> solve;
+  MotionText describe;
+  Matrix lengths;     ///< of the springs by each motion, k x k
+  double stiffness;   ///< forces on motions over lengths of springs
+  std::string advice; ///< where forces do not balance
+};
+
+/// The beta at which forces balance, from this one; `solve` is called last with it. Throws failure
+/// where they do not balance, or where nothing holds a motion at the answer.
+Vector balance_bodies(Vector beta, const HeldBodies &bodies);
 
 } // namespace rbvi

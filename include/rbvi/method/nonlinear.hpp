@@ -12,6 +12,7 @@
 
 #include "rbvi/method/friction.hpp"
 #include "rbvi/method/nodal.hpp"
+#include "rbvi/method/starts.hpp"
 
 #include <functional>
 
@@ -35,17 +36,32 @@ struct NodalContact {
   NodalCompliance &compliance;
 };
 
+/// A solution of one linearised problem.
+struct Iterate {
+  Vector x{};
+  Vector start{};    ///< with friction: where the next starts
+  Vector diagonal{}; ///< H_jj; where the column was not asked for the mean of the others
+  Vector u{};
+  Vector reaction{}; ///< load on the contact dofs: u = u_0 - C reaction
+  std::vector<Index> active{};
+};
+
 struct NonlinearContact {
   std::function<void(const Vector &state, Linearised &at_state)> linearise{};
   /// Empty: there is none.
   std::function<CurvatureRows(const Vector &state, const Vector &x)> curvature{};
-  Compliance &compliance;
+  Compliance *compliance = nullptr;
   Vector free;       ///< u_0
   Vector undeformed; ///< the state in which nothing has moved
   NodeLaws laws;
-  SparseMatrix w_product; ///< Gram matrix of the multipliers
+  SparseMatrix
+      w_product; ///< Gram matrix of the multipliers; empty: their coefficients are measured
   /// Only where the rows of x are the normal ones of all nodes, then the tangential ones.
   std::optional<NodalContact> nodal{};
+  /// Instead of B, g and the compliance: x and u of the problem linearised at a state, which it may
+  /// move to one where there is a problem. Then NonlinearResult has no start and no residual.
+  std::function<Iterate(Vector &state)> solve{};
+  std::string advice{}; ///< where it does not settle; empty: other methods
 };
 
 enum class NonlinearMethod {
@@ -71,11 +87,6 @@ struct NonlinearOptions {
   bool economical = false;
 };
 
-struct NonlinearStart {
-  Vector state; ///< at the contact dofs
-  Vector x;     ///< as NonlinearResult::start; empty: none is known
-};
-
 struct NonlinearResult {
   Vector x;
   Vector start;    ///< x - w / H_jj (FrictionResult::start)
@@ -89,11 +100,9 @@ struct NonlinearResult {
   /// (A.8) of the last step: the energy norm of the change of u over that of u - u_0, and the norm
   /// of the change of x in W over that of x.
   double change_u = 0, change_x = 0;
-  /// Largest violation of the laws with the condition at the solution, relative:
-  /// |x - P(x - w / H_jj)| over max |x|, P the projection of the laws.
-  double residual = 0;
-  double rate = 0; ///< contraction: the change of the last step over that of the one before
-  Vector last_x;   ///< not converged: x of the last step; empty: there is none
+  double residual = 0; ///< of the laws with the condition at the solution: residual_of_laws
+  double rate = 0;     ///< contraction: the change of the last step over that of the one before
+  Vector last_x;       ///< not converged: x of the last step; empty: there is none
   bool converged = false;
   std::string reason; ///< why it stopped; not converged: what to try
 };
@@ -101,7 +110,7 @@ struct NonlinearResult {
 /// Where steps from `start` fail, once more from the undeformed body in load steps: a part of the
 /// motion and of the loads after the other. Never throws for a condition or a law that fails;
 /// throws bad_input for a method that this contact has not.
-NonlinearResult solve_nonlinear(const NonlinearContact &contact, const NonlinearStart &start,
+NonlinearResult solve_nonlinear(const NonlinearContact &contact, const Start &start,
                                 const NonlinearOptions &options = {});
 
 } // namespace rbvi

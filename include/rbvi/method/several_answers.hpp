@@ -67,5 +67,7 @@ double distance_of_answers(const Vector &x, const Vector &other);
 /// `found`; and from the contact of `found` (of all nodes where it has none) with all of it stuck,
 /// or slipping one way or the other. Where bounds do not follow the pressure nothing is asked.
 double distance_to_other_answer(FrictionSolver &solver, const FrictionResult &found);
+/// The same where that is asked for; at least least_distance where others are known of.
+double distance_seen(FrictionSolver &solver, const FrictionAnswer &found, bool looks);
 
 } // namespace rbvi

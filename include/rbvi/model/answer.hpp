@@ -3,6 +3,7 @@
 
 #include "rbvi/contact/interface.hpp"
 #include "rbvi/method/answer.hpp"
+#include "rbvi/method/balance.hpp"
 #include "rbvi/method/residual.hpp"
 
 #include <optional>
@@ -10,23 +11,15 @@
 
 namespace rbvi {
 
-/// What holds k free motions: B Z; Z^T F without springs, and the sums of the sizes of its terms.
-struct FreeMotions {
-  NodeLaws laws;
-  Matrix held; ///< rows of the laws x k
-  Vector load, terms;
-  /// Of the multipliers by what springs are relaxed at, while active sets stay; empty: not known.
-  Matrix slope{};
-};
-
 /// u: n coefficients; lambda: R coefficients, >= 0 but for those of the free modes; residual: of
 /// the reduced problem, at all nodes of the law where they are known.
 struct ReducedAnswer : Answer {
   FullMu mu;
-  Vector theta_b;            ///< coefficients of b at this mu, where it separates
-  ContactOperators contact;  ///< at this mu, where they do not separate
-  Vector reaction;           ///< with them, of the law at nodes: B^T x on CondensedOperator::dofs
-  double energy = 0;         ///< a(u,u)/2 - f(u), of the domain alone (not its mirror images)
+  Vector theta_b;           ///< coefficients of b at this mu, where it separates
+  ContactOperators contact; ///< at this mu, where they do not separate
+  Vector reaction;          ///< with them, of the law at nodes: B^T x on CondensedOperator::dofs
+  Vector left{};     ///< of the law at all nodes: H x + q, of which displace() makes the residual
+  double energy = 0; ///< a(u,u)/2 - f(u), of the domain alone (not its mirror images)
   double least_pressure = 0; ///< of the peak: where there is at most so much a node counts as free
   /// Largest distance to another answer that was seen, relative to the largest multiplier; 0: none.
   double to_other = 0;

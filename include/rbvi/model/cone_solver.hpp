@@ -10,11 +10,18 @@
 #pragma once
 
 #include "rbvi/method/mixed_qp.hpp"
+#include "rbvi/method/starts.hpp"
 #include "rbvi/model/answer.hpp"
 #include "rbvi/model/reduced_body.hpp"
-#include "rbvi/model/sample_starts.hpp"
 
 namespace rbvi {
+
+/// Where a query starts.
+struct ConeStart {
+  std::vector<Index> active;
+  std::optional<MixedQp> qp{}; ///< with its factorisation, of Y number y_number
+  int y_number = 0;
+};
 
 class ConeSolver : public QueryMethod {
 public:
@@ -54,12 +61,7 @@ private:
 
   // What a query changes.
   Vector beta_; ///< Relaxed::beta
-  struct Start {
-    std::vector<Index> active;
-    std::optional<MixedQp> qp; ///< with its factorisation, of Y number y_number
-    int y_number = 0;
-  };
-  SampleStarts<Start> starts_;
+  Starts<ConeStart> starts_;
   BodyAtMu at_mu_;
   MixedQp qp_;
   int y_number_ = 0; ///< Y so far
@@ -70,18 +72,5 @@ private:
   double b_scale_ = 1;
   Vector f_, g_;
 };
-
-/// What a residual of the pair of spaces is made of; what it refers to must outlive it.
-struct KktTerms {
-  const Vector &au, &btx, &f; ///< A u, B^T x
-  const Vector &bu, &g, &x;   ///< B u
-  Index equations = 0;        ///< so many of the last rows have B u = g
-  double displacement = 0;    ///< what cancels in B u: ContactRemainders::displacement, by rows
-  double stiffness = 0;       ///< what cancels in A u: |diag(A) u|
-};
-
-/// KktResidual::largest() of A u + B^T x = f, B u <= g, x . (B u - g) = 0 for x >= 0, rows of
-/// weight 1.
-double kkt_residual(const KktTerms &answer);
 
 } // namespace rbvi

@@ -40,8 +40,11 @@ public:
   FrictionSolver &friction() { return *friction_; } ///< likewise
   const BodyAtMu &body() const { return at_mu_; }
   AtAllNodes at_all_nodes(const LawAtMu &law, const Vector &x);
-  /// Sets the displacement of answer.lambda. Throws failure where contact leaves the nodes that the
-  /// model has multipliers at.
+  /// KktResidual::largest() of multipliers with w = H x + q.
+  double residual(const LawAtMu &law, const Vector &x, const Vector &w) const;
+  /// Sets the displacement of answer.lambda and, where answer.left is there, the residual. Throws
+  /// failure where that is above its limit, and where contact leaves the nodes that the model has
+  /// multipliers at.
   void displace(ReducedAnswer &answer) const;
 
 private:
@@ -63,26 +66,6 @@ private:
   // what of the law there is without them.
   Vector theta_, q_, load_, unloaded_;
   Matrix springs_, motions_;
-};
-
-/// Where queries start: from what the training samples around mu predict (core/box.hpp), or
-/// the last answer where that is asked for.
-class LawStarts {
-public:
-  /// Both must outlive it.
-  LawStarts(const ReducedModel &model, const Scene &scene, bool warm);
-  /// FrictionResult::start; empty: from rest.
-  Vector at(const FullMu &mu) const;
-  /// What a column of values for each sample predicts at mu.
-  Vector predicted(const Matrix &of_samples, const FullMu &mu) const;
-  void keep(const Vector &start);
-
-private:
-  const ReducedModel &model_;
-  const Scene &scene_;
-  const bool warm_;
-  const Matrix samples_; ///< where the starts are, as parts of the box
-  Vector last_;
 };
 
 /// The functions in coefficients of the nodal dual basis: m x (R + S).

@@ -11,6 +11,7 @@
 #pragma once
 
 #include "rbvi/core/variants.hpp"
+#include "rbvi/method/starts.hpp"
 #include "rbvi/model/answer.hpp"
 #include "rbvi/model/nitsche_layer_terms.hpp"
 #include "rbvi/model/reduced_body.hpp"
@@ -72,8 +73,6 @@ private:
     Vector f;
   };
   Quadratic quadratic_at(const FullMu &all_parameters) const;
-  /// `of_samples`: NitscheModel::starts or states.
-  Vector predicted(const Matrix &of_samples, const FullMu &all_parameters) const;
   /// The answer with the integrals over the whole curve, from u. Sets quadrature_residual, of u.
   /// `faces`: of all cells at rest.
   Vector over_whole_curve(const FullMu &all_parameters, const std::vector<NitscheFace> &faces,
@@ -85,6 +84,7 @@ private:
   SampledLayer consistency_;
   std::unique_ptr<System> system_;
   std::unique_ptr<InterpolatedCurve> interpolated_;
+  const Neighbours starts_;
   const bool from_rest_;                  ///< OnlineMethod::newton
   mutable std::unique_ptr<System> whole_; ///< made by the first outputs of a model with few points
 };

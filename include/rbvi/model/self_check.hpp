@@ -11,8 +11,9 @@ int queries_of_check(const ReducedModel &model);
 
 /// Asks `model` at so many random parameters of its box, the same on every machine, and at its
 /// corners and faces (corners_and_faces), and collects what SelfCheck holds. Costs so many queries
-/// with outputs. Throws bad_input where model and scene do not fit.
-SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries);
+/// with outputs. Throws bad_input where model, scene and options do not fit.
+SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries,
+                     const QueryOptions &options = {});
 
 /// Asks a model with friction whether its law has other answers (QueryOptions::looks_for_others) at
 /// the parameters of `set`; empty: at those of the self-check. Where it has, the model knows

@@ -2,6 +2,7 @@
 // Niakh (2022): (2.20).
 #pragma once
 
+#include "rbvi/model/answer.hpp"
 #include "rbvi/model/model.hpp"
 #include "rbvi/mor/affine.hpp"
 #include "rbvi/mor/collocation.hpp"
@@ -65,6 +66,7 @@ struct ReduceOptions {
   CurveOptions curve; ///< Nitsche's method
   Enrichment enrichment = Enrichment::offline;
   SupremizerProduct product = SupremizerProduct::v;
+  OnlineMethod online_method = OnlineMethod::exact; ///< of the queries of the model
   Mu reference; ///< free parameters of the a of energy and of the hybrid cone; empty: box_centre
 };
 

@@ -103,16 +103,15 @@ public:
   void forget();
 
 private:
-  const Solved *nearest(const Mu &mu) const;
   MethodResult run(const Mu &mu, const Operators &op, const Vector &slip, const Solved *near,
                    bool continues);
-  MethodResult run_free(const Mu &mu, const Operators &op, ContactRows rows, const Vector &slip);
+  MethodResult run_free(const Mu &mu, const Operators &op, const Vector &slip, const Solved *near);
 
   Problem &problem_;
   HfOptions options_;
   Handle<KSP> ksp_;
   std::unique_ptr<ContactMethod> method_;
-  std::vector<Solved> solved_;
+  std::unique_ptr<Starts<Solved>> solved_;
 };
 
 } // namespace rbvi

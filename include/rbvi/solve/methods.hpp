@@ -46,7 +46,7 @@ struct FollowingResult {
 /// every step on every rank. `op`: at mu; its contact operators become those of the solution.
 /// `slip`: the history of friction. Throws failure where it does not converge. Collective.
 FollowingResult solve_following(FactoredBody &body, const Problem &problem, Operators &op,
-                                const Vector &slip, const NonlinearStart &start,
+                                const Vector &slip, const Start &start,
                                 const NonlinearOptions &options);
 
 /// `f`: the load; `w_product`: over the ranks. Collective.

@@ -38,9 +38,8 @@ struct RunFiles {
 struct OfflineOptions : Setup, RunFiles {
   std::string train; ///< as parse_set reads it
   ReduceOptions reduce;
-  OnlineMethod online_method = OnlineMethod::exact; ///< of the queries of the model
-  int ranks_per_solve = 0;                          ///< 0: auto, as group_ranks chooses
-  double max_failures = 0.1;                        ///< share of a set that may fail
+  int ranks_per_solve = 0;   ///< 0: auto, as group_ranks chooses
+  double max_failures = 0.1; ///< share of a set that may fail
   bool plan = false;
 };
 

@@ -53,16 +53,17 @@ private:
   const Scene &scene_;
   const QueryOptions options_;
   NodeLawSolver at_nodes_;
-  SampleStarts<Vector> starts_;
-  Vector last_;    ///< CollocatedResult::x of the last query
-  Matrix product_; ///< Gram matrix of the functions in W, for Uzawa's method
+  Starts<Vector> starts_; ///< CollocatedResult::x
+  Matrix product_;        ///< Gram matrix of the functions in W, for Uzawa's method
 };
 
 CollocatedSolver::CollocatedSolver(const ReducedModel &model, const Scene &scene,
                                    const Contact &contact, const QueryOptions &options)
     : model_(model), scene_(scene), options_(options),
       at_nodes_(model, scene, contact, options, false),
-      starts_(scene.parameters, model.contact.law->starts_mu) {
+      starts_(scene.parameters,
+              options.method == OnlineMethod::uzawa ? Matrix() : model.contact.law->starts_mu,
+              options.warm) {
   if (options.method != OnlineMethod::uzawa) return;
   const Matrix functions =
       model.contact.dual_basis * multiplier_coefficients(model.contact.law->basis);
@@ -84,14 +85,14 @@ CollocatedResult CollocatedSolver::solve_functions(const LawAtMu &law, const Vec
 }
 
 Vector CollocatedSolver::start(const FullMu &mu) {
-  if (options_.warm || product_.size() > 0) return last_;
-  return starts_.nearest(parts_of_box(scene_.parameters, mu), [&](Index sample) {
+  const auto from_rest = [&](Index sample) {
     const Vector there = model_.contact.law->starts_mu.col(sample);
     ReducedAnswer unused;
     const LawAtMu &law =
         at_nodes_.problem().at(expand(scene_.parameters, {there.begin(), there.end()}), unused);
     return solve_functions(law, {}).x;
-  });
+  };
+  return starts_.at([&] { return starts_.nearest_from(mu, from_rest); });
 }
 
 bool CollocatedSolver::answer_on_functions(const LawAtMu &law, const Vector &start,
@@ -106,7 +107,7 @@ bool CollocatedSolver::answer_on_functions(const LawAtMu &law, const Vector &sta
       answer.to_other = distance_of_answers(answer.lambda, functions * solve_functions(law, {}).x);
     answer.residual = reduced.residual;
     answer.iterations = reduced.iterations;
-    last_ = std::move(reduced.x);
+    starts_.keep(reduced.x);
   } catch (const Error &) {
     if (!mends) throw;
     return false;
@@ -118,15 +119,16 @@ bool CollocatedSolver::answer_on_functions(const LawAtMu &law, const Vector &sta
   }
   AtAllNodes nodes = at_nodes_.problem().at_all_nodes(law, answer.lambda);
   answer.energy = 0.5 * (answer.lambda.dot(nodes.w - law.q) - law.load.squaredNorm());
-  answer.residual = violation(law.laws, answer.lambda, nodes.start);
+  answer.residual = at_nodes_.problem().residual(law, answer.lambda, nodes.w);
   answer.start = std::move(nodes.start);
-  return !mends || answer.residual <= mended_above;
+  return !mends || violation(law.laws, answer.lambda, answer.start) <= mended_above;
 }
 
 ReducedAnswer CollocatedSolver::solve(const FullMu &mu, Relaxed relaxed) {
   const Vector from = start(mu);
   ReducedAnswer answer = std::move(relaxed.before);
   answer.start.resize(0);
+  answer.left.resize(0);
   answer.iterations = 0;
   const LawAtMu &law = at_nodes_.problem().at(mu, answer, {}, relaxed.beta);
   if (!answer_on_functions(law, from, answer)) at_nodes_.solve_at_nodes(law, answer);
