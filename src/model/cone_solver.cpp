@@ -53,17 +53,14 @@ void ConeSolver::evaluate_contact(const Vector &state, ReducedAnswer &answer) {
   root_of_y_ = 0;
 }
 
-/// Where the only term of B keeps its sign, b_ stays.
+/// Of the only term of B the sign alone is in b_.
 void ConeSolver::set_b(const Vector &theta_b) {
-  const double ratio = theta_b.size() == 1 && theta_b_.size() == 1 ? theta_b[0] / theta_b_[0] : 0;
-  if (std::isfinite(ratio) && ratio > 0) {
-    b_scale_ = ratio;
-    return;
-  }
-  b_scale_ = 1;
-  b_ = (model_.contact.b.reduced * theta_b)
-           .reshaped(model_.contact.generators, model_.primal_size());
-  theta_b_ = theta_b;
+  const bool scales = theta_b.size() == 1 && theta_b[0] != 0 && std::isfinite(theta_b[0]);
+  b_scale_ = scales ? std::abs(theta_b[0]) : 1;
+  const Vector theta = theta_b / b_scale_;
+  if (theta == theta_b_) return;
+  b_ = (model_.contact.b.reduced * theta).reshaped(model_.contact.generators, model_.primal_size());
+  theta_b_ = theta;
   turned_b_ = body_.turned(b_.transpose());
   root_of_y_ = 0;
 }
@@ -71,7 +68,7 @@ void ConeSolver::set_b(const Vector &theta_b) {
 void ConeSolver::set_y() {
   if (model_.body.online_enriched) at_mu_.restrict_to(enriched_subspace(b_, model_.body.modes));
   if (root_of_y_ == at_mu_.root_number()) return;
-  y_ = std::sqrt(at_mu_.scale()) * at_mu_.half_response_of_turned(turned_b_);
+  y_ = at_mu_.scaled_half_response_of_turned(turned_b_);
   root_of_y_ = at_mu_.root_number();
   ++y_number_;
   qp_.reset();

@@ -203,10 +203,14 @@ Vector BodyAtMu::diagonal() const {
 }
 
 Matrix BodyAtMu::half_response_of_turned(const Matrix &turned) const {
-  if (inverse_roots_.size() > 0) return (inverse_roots_ / std::sqrt(scale_)).asDiagonal() * turned;
+  return scaled_half_response_of_turned(turned) / std::sqrt(scale_);
+}
+
+Matrix BodyAtMu::scaled_half_response_of_turned(const Matrix &turned) const {
+  if (inverse_roots_.size() > 0) return inverse_roots_.asDiagonal() * turned;
   if (inverse_.size() > 0) {
     const Matrix part = inverse_ * (body_.u_.transpose() * turned);
-    return (turned + body_.u_ * part) / std::sqrt(scale_);
+    return turned + body_.u_ * part;
   }
   Matrix half = subspace_.size() > 0 ? Matrix(subspace_.transpose() * turned) : turned;
   solve_lower(factor(), half);

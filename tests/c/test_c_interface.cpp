@@ -4,6 +4,7 @@
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/model/model_image.hpp"
 #include "rbvi/model/online.hpp"
+#include "rbvi/model/published/queries.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +13,7 @@
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <mutex>
 #include <numeric>
 #include <thread>
 
@@ -22,6 +24,10 @@ constexpr std::size_t queries = 200;
 
 class CInterface : public testing::TestWithParam<const char *> {
 protected:
+  static void SetUpTestSuite() {
+    static std::once_flag once;
+    std::call_once(once, add_published_queries);
+  }
   void SetUp() override {
     const std::filesystem::path file = std::filesystem::path(RBVI_MODELS) / GetParam() / "model.h5";
     model_ = read_model(file, Registry{});
@@ -252,8 +258,8 @@ TEST_F(Refusals, OfNumbers) {
   refuses(rbvi_scene(handle_, nullptr));
   refuses(rbvi_solve_many(handle_, nullptr, 1, 1, 0, values_.data(), nullptr, nullptr, nullptr,
                           nullptr));
-  refuses(rbvi_solve_many(handle_, mu_.data(), 1, 1, 0, nullptr, nullptr, nullptr, nullptr,
-                          nullptr));
+  refuses(
+      rbvi_solve_many(handle_, mu_.data(), 1, 1, 0, nullptr, nullptr, nullptr, nullptr, nullptr));
 }
 
 TEST_F(Refusals, OfWhatIsNotThere) {

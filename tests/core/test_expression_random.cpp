@@ -87,8 +87,10 @@ Slope difference(const BoundExpression &bound, std::array<double, 4> at, std::si
     for (std::size_t j = 1; j <= i; ++j) {
       factor *= 1.7 * 1.7;
       table[i][j] = (table[i][j - 1] * factor - table[i - 1][j - 1]) / (factor - 1);
-      const double error = std::max(std::abs(table[i][j] - table[i][j - 1]),
-                                    std::abs(table[i][j] - table[i - 1][j - 1]));
+      // Values of 1e12 have differences that agree because they are multiples of 1e-4.
+      const double noise = std::numeric_limits<double>::epsilon() * std::abs(above) / step;
+      const double error = std::max({noise, std::abs(table[i][j] - table[i][j - 1]),
+                                     std::abs(table[i][j] - table[i - 1][j - 1])});
       if (error < best.error) best = {table[i][j], error};
     }
   }

@@ -62,7 +62,7 @@ def check_includes(root):
             wrong.append(f"{path.relative_to(root)}: src/README.md has no layer {layer}")
             continue
         for name, target in included(path, root):
-            if layer == "bin" and name == "tests/catalogue.hpp":
+            if layer == "bin" and name in ("tests/catalogue.hpp", "rbvi.h"):
                 continue
             if target is None:
                 wrong.append(f"{path.relative_to(root)} includes {name}, which is nowhere")

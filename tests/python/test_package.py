@@ -95,7 +95,7 @@ class Answers(unittest.TestCase):
                       lambda: self.model()["normal_forse"],
                       lambda: self.model.table([[1, 2, 3, 4, 5]]),
                       lambda: self.model.table({"radios": [1]}),
-                      lambda: self.model.contact("nowhere"), lambda: rbvi.check("nowhere.yaml")]:
+                      lambda: self.model.contact("nowhere"), lambda: rbvi.check("nowhere.yaml", quiet=True)]:
             with self.assertRaises(rbvi.RbviError) as caught:
                 wrong()
             self.assertNotIn("\n", str(caught.exception))

@@ -74,6 +74,8 @@ public:
   int root_number() const { return root_number_; }
   /// R^-1 of loads that were turned.
   Matrix half_response_of_turned(const Matrix &turned) const;
+  /// The same times the root of scale(), with the same digits whatever that is.
+  Matrix scaled_half_response_of_turned(const Matrix &turned) const;
   Matrix half_response(const Matrix &loads) const;           ///< R^-1 loads, n x any number
   Vector half_response_to_load() const;                      ///< R^-1 load()
   Matrix half_response_to_springs() const;                   ///< n x k

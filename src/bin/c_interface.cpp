@@ -87,6 +87,8 @@ template <class Work> rbvi_status with_query(rbvi_workspace *handle, Work &&work
 }
 
 std::vector<std::byte> file_bytes(const char *name) {
+  if (std::error_code ignored; std::filesystem::is_directory(name, ignored))
+    throw bad_input(std::string(name) + " is a directory, not an image of a model");
   std::ifstream file(name, std::ios::binary | std::ios::ate);
   const std::streamoff size = file ? std::streamoff(file.tellg()) : -1;
   std::vector<std::byte> bytes(size > 0 ? static_cast<std::size_t>(size) : 0);
@@ -298,8 +300,10 @@ rbvi_status rbvi_contact(rbvi_workspace *workspace, size_t contact, rbvi_grid *g
 }
 
 rbvi_status rbvi_field(rbvi_workspace *workspace, rbvi_grid *grid) {
-  return with_query(workspace,
-                    [&](SharedQuery &query) { there(grid, "the grid") = query.field(); });
+  return with_query(workspace, [&](SharedQuery &query) {
+    rbvi_grid &to = there(grid, "the grid");
+    to = query.field();
+  });
 }
 
 rbvi_status rbvi_column_at(rbvi_workspace *workspace, size_t i, rbvi_column *column) {
