@@ -375,8 +375,6 @@ ContactRecipe by_multipliers(const RigidContact &rigid) {
   ContactRecipe recipe;
   recipe.entities = {InterfaceEntities::Kind::curves, {rigid.boundary}, {}, rigid.curved};
   add_friction(rigid.friction, recipe);
-  recipe.coefficients.insert(recipe.coefficients.end(), rigid.coefficients.begin(),
-                             rigid.coefficients.end());
   recipe.follows_state = rigid.facing.follows_state;
   recipe.separable = !recipe.follows_state;
   recipe.nodal = rigid.lumped && recipe.separable;

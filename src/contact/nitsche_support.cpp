@@ -108,13 +108,15 @@ std::string nitsche_name(const std::string &name) {
   return "nitsche_" + name.substr(name.starts_with("rigid_") ? 6 : 0);
 }
 
+constexpr int nitsche_version = 2; ///< 1: of a support the stress was on the normal of contact
+
 /// `name`, and of Nitsche's method: of what `thing` makes of a record.
 template <class Thing>
 void add_kinds(const std::string &name, int version, Thing (*thing)(const Stored &),
                std::vector<ContactKind> &kinds) {
-  kinds.push_back(
-      {name, 1, [thing](const Stored &of) { return by_multipliers(rigid_contact(thing(of))); }});
-  kinds.push_back({nitsche_name(name), version, [thing](const Stored &of) {
+  kinds.push_back({name, version,
+                   [thing](const Stored &of) { return by_multipliers(rigid_contact(thing(of))); }});
+  kinds.push_back({nitsche_name(name), nitsche_version, [thing](const Stored &of) {
                      return by_nitsche(rigid_contact(thing(of)), number(of, "gamma0"));
                    }});
 }
@@ -149,8 +151,6 @@ ContactRecipe by_nitsche(const RigidContact &rigid, double gamma0) {
   recipe.entities = {InterfaceEntities::Kind::cells_beside, {rigid.boundary}, {}, rigid.curved};
   recipe.formulation = Formulation::nitsche;
   add_friction(rigid.friction, recipe);
-  recipe.coefficients.insert(recipe.coefficients.end(), rigid.coefficients.begin(),
-                             rigid.coefficients.end());
   recipe.separable = false;
   recipe.make = [rigid, gamma0](const Scene &scene, InterfaceMesh mesh) {
     return std::make_unique<NitscheInterface>(scene, std::move(mesh),
@@ -158,17 +158,15 @@ ContactRecipe by_nitsche(const RigidContact &rigid, double gamma0) {
   };
   recipe.record = rigid.record;
   recipe.record.name = nitsche_name(rigid.record.name);
-  // 1: of a support the stress was on the normal of contact.
-  recipe.record.version = rigid.facing.follows_state ? 1 : 2;
+  recipe.record.version = nitsche_version;
   recipe.record.numbers["gamma0"] = {gamma0};
   return recipe;
 }
 
 std::vector<ContactKind> rigid_kinds() {
   std::vector<ContactKind> kinds;
-  add_kinds("rigid_support", 2, support_in, kinds);
-  add_kinds("half_plane", 2, half_plane_in, kinds);
-  add_kinds("rigid_surface", 1, surface_in, kinds);
+  add_kinds("rigid_support", 1, support_in, kinds);
+  add_kinds("rigid_surface", 2, surface_in, kinds);
   return kinds;
 }
 

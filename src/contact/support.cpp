@@ -11,36 +11,57 @@ namespace rbvi {
 
 namespace {
 
-Point normal_of(const HalfPlane &plane, const FullMu &mu) {
-  const double angle = plane.tilt ? plane.tilt(mu) : 0;
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * plane.normal[0] - s * plane.normal[1], s * plane.normal[0] + c * plane.normal[1], 0};
-}
+/// A point of the boundary at rest.
+struct AtRest {
+  Named<Surface> surface;
+  Named<PointMap> body_normal; ///< of contact; empty: that of the surface
+  Partner partner;
 
-Record record_of(const HalfPlane &plane) {
-  const auto coordinates = [](const Point &x) { return std::vector<double>(x.begin(), x.end()); };
-  Record record{"half_plane",
-                1,
-                {{"normal", coordinates(plane.normal)},
-                 {"pivot", coordinates(plane.pivot)},
-                 {"lumped", {plane.lumped ? 1.0 : 0.0}}},
-                {{"boundary", plane.boundary}},
-                {{"position", plane.position.record}}};
-  if (plane.tilt) record.parts["tilt"] = plane.tilt.record;
-  if (plane.surface) record.parts["surface"] = plane.surface.record;
-  if (plane.body_normal) record.parts["body_normal"] = plane.body_normal.record;
-  add_friction(plane.friction, record);
-  return record;
-}
-
-/// What a point faces along its normal; distance(mu, x, normal) without the motion.
-template <class Distance>
-auto faced(const std::function<PointMap> &normal, const Distance &distance) {
-  return [=](const FullMu &mu, const PlacedPoint &point, const Point &) {
-    const Point n = normal(mu, point.x);
-    return FacedPoint{n, distance(mu, point.x, n) - dot(point.motion, n),
-                      slip_along(n, point.motion)};
+  struct Faced {
+    Point normal, way; ///< to the partner
   };
+  Faced operator()(const FullMu &mu, const PlacedPoint &point) const {
+    if (partner != Partner::closest || body_normal) {
+      const Point n = body_normal ? body_normal(mu, point.x) : -1.0 * surface(mu, point.y).normal;
+      return {n, to_partner(surface, partner, mu, point.y, n)};
+    }
+    const SurfacePoint next = surface(mu, point.y);
+    return {-1.0 * next.normal, -next.distance * next.normal};
+  }
+};
+
+Facing faced_at_rest(const RigidSurface &of) {
+  const AtRest faced{of.surface, of.along_body ? of.body_normal : Named<PointMap>(), of.partner};
+  Facing facing;
+  facing.at = [faced](const FullMu &mu, const PlacedPoint &point, const Point &) {
+    const auto [n, way] = faced(mu, point);
+    return FacedPoint{n, dot(way, n) - dot(point.motion, n), slip_along(n, point.motion)};
+  };
+  facing.normal = faced.body_normal;
+  if (is_plane(of.surface) && !of.along_body && of.partner == Partner::closest)
+    return facing; // its condition is exact wherever the body is
+  facing.partner = [faced](const FullMu &mu, const PlacedPoint &point) {
+    return point.y + faced(mu, point).way;
+  };
+  facing.distance = [surface = of.surface](const FullMu &mu, const PlacedPoint &point,
+                                           const Point &moved) {
+    return surface(mu, point.y + moved).distance;
+  };
+  return facing;
+}
+
+Facing faced_where_it_is(const RigidSurface &of) {
+  Facing facing;
+  facing.at = [surface = of.surface](const FullMu &mu, const PlacedPoint &point,
+                                     const Point &displacement) {
+    const SurfacePoint next = surface(mu, point.y + point.motion + displacement);
+    const Point n = -1.0 * next.normal;
+    return FacedPoint{n, next.distance + dot(n, displacement), slip_along(n, point.motion),
+                      next.curvature};
+  };
+  facing.follows_state = true;
+  facing.along_body = of.along_body;
+  return facing;
 }
 
 } // namespace
@@ -55,29 +76,42 @@ RigidContact rigid_contact(const Support &support) {
                       {{"lumped", {support.lumped ? 1.0 : 0.0}}},
                       {{"boundary", support.boundary}},
                       {{"normal", support.normal.record}, {"gap", support.gap.record}}}};
-  if (const auto *to_surface = support.gap.target<GapToSurface>()) { // it needs no other normal
-    rigid.facing.at =
-        faced(support.normal, [to = *to_surface](const FullMu &mu, const Point &x, const Point &n) {
-          return to.along(mu, x, n);
-        });
-    rigid.facing.distance = [to = *to_surface](const FullMu &mu, const Point &x,
-                                               const Point &moved) {
-      return to.surface(mu, to.at(mu, x) + moved).distance;
-    };
-    rigid.facing.partner = [to = *to_surface](const FullMu &mu, const Point &x) {
-      return to.partner(mu, x);
-    };
-  } else {
-    rigid.facing.at =
-        faced(support.normal, [gap = support.gap](const FullMu &mu, const Point &x, const Point &) {
-          return gap(mu, x);
-        });
-  }
+  rigid.facing.at = [normal = support.normal,
+                     gap = support.gap](const FullMu &mu, const PlacedPoint &point, const Point &) {
+    const Point n = normal(mu, point.x);
+    return FacedPoint{n, gap(mu, point.x) - dot(point.motion, n), slip_along(n, point.motion)};
+  };
   rigid.facing.normal = support.normal;
-  rigid.facing.asks_place = false;
   rigid.facing.body_normal = support.body_normal;
   if (support.body_normal) rigid.record.parts["body_normal"] = support.body_normal.record;
   add_friction(support.friction, rigid.record);
+  return rigid;
+}
+
+RigidContact rigid_contact(const RigidSurface &surface) {
+  if (surface.along_body && !surface.body_normal)
+    throw bad_input("contact along the normal of the body needs a boundary on a circle ('curves:') "
+                    "and a map that does not turn or stretch it");
+  if (surface.large && surface.partner != Partner::closest)
+    throw bad_input("kinematics: large measures the gap to the next point: leave out gap");
+  RigidContact rigid{surface.boundary,
+                     surface.large ? faced_where_it_is(surface) : faced_at_rest(surface),
+                     surface.friction,
+                     surface.lumped,
+                     {"rigid_surface",
+                      2,
+                      {{"lumped", {surface.lumped ? 1.0 : 0.0}},
+                       {"along_body", {surface.along_body ? 1.0 : 0.0}},
+                       {"large", {surface.large ? 1.0 : 0.0}},
+                       {"partner", {static_cast<double>(surface.partner)}}},
+                      {{"boundary", surface.boundary}},
+                      {{"surface", surface.surface.record}}}};
+  rigid.facing.at_rest = surface.at_rest;
+  // Where the body is followed its stress acts on the edges (Nitsche's method).
+  if (!surface.large || surface.along_body) rigid.facing.body_normal = surface.body_normal;
+  if (surface.at_rest) rigid.record.parts["at_rest"] = surface.at_rest.record;
+  if (surface.body_normal) rigid.record.parts["body_normal"] = surface.body_normal.record;
+  add_friction(surface.friction, rigid.record);
   return rigid;
 }
 
@@ -95,7 +129,8 @@ double gap_error(const ContactInterface &interface, const Scene &scene, const Fa
     const double way = dot(normal, moved),
                  left = gap - normal[0] * u[2 * node] - normal[1] * u[2 * node + 1];
     try {
-      errors.add(lambda[static_cast<Index>(k)], way, left, facing.distance(mu, x, moved));
+      errors.add(lambda[static_cast<Index>(k)], way, left,
+                 facing.distance(mu, place(scene, facing, mu, x), moved));
     } catch (const Error &) { // nothing is faced from there
     }
   }
@@ -133,8 +168,9 @@ Grid support_fields(const ContactInterface &interface, const Scene &scene, const
     slip[k] = slip_along(at.direction, {moved[3 * k], moved[3 * k + 1], 0});
     normals.push_back(at.direction);
     if (facing.partner)
-      ways.push_back(facing.partner(mu, x) - Point{grid.points(k, 0) + moved[3 * k],
-                                                   grid.points(k, 1) + moved[3 * k + 1], 0});
+      ways.push_back(
+          facing.partner(mu, place(scene, facing, mu, x)) -
+          Point{grid.points(k, 0) + moved[3 * k], grid.points(k, 1) + moved[3 * k + 1], 0});
     pressure[k] = dual_of[k] < 0 ? 0 : lambda[dual_of[k]];
     shear[k] = dual_of[k] < 0 || lambda.size() == of_dual ? 0 : lambda[of_dual + dual_of[k]];
   }
@@ -153,78 +189,14 @@ Support support_in(const Stored &of) {
   return support;
 }
 
-HalfPlane half_plane_in(const Stored &of) {
-  const auto point = [&](const std::string &name) -> Point {
-    const std::vector<double> &x = numbers(of, name);
-    if (x.size() != 3) throw bad_input("'" + name + "' of a half-plane is not three numbers");
-    return {x[0], x[1], x[2]};
-  };
-  HalfPlane plane{text(of, "boundary"), point("normal"), point("pivot"),
-                  made<Coefficient>(part(of, "position"))};
-  if (of.record.parts.contains("tilt")) plane.tilt = made<Coefficient>(part(of, "tilt"));
-  if (of.record.parts.contains("surface")) plane.surface = made<PointMap>(part(of, "surface"));
-  plane.friction = friction_in(of);
-  plane.lumped = number(of, "lumped") != 0;
-  if (of.record.parts.contains("body_normal"))
-    plane.body_normal = made<PointMap>(part(of, "body_normal"));
-  return plane;
-}
-
-RigidContact rigid_contact(const HalfPlane &plane) {
-  const double length = std::hypot(plane.normal[0], plane.normal[1], plane.normal[2]);
-  if (!(std::abs(length - 1) <= 1e-12) || plane.normal[2] != 0)
-    throw bad_input("the normal of the half-plane on '" + plane.boundary + "' is (" +
-                    short_number(plane.normal[0]) + ", " + short_number(plane.normal[1]) + ", " +
-                    short_number(plane.normal[2]) +
-                    "): give one of length 1 in the plane of x and y");
-  RigidContact rigid{plane.boundary, {}, plane.friction, plane.lumped, record_of(plane)};
-  rigid.facing.at = [plane](const FullMu &mu, const PlacedPoint &point, const Point &) {
-    const Point n = normal_of(plane, mu);
-    const double gap = plane.position(mu) - (point.y[0] - plane.pivot[0]) * n[0] -
-                       (point.y[1] - plane.pivot[1]) * n[1];
-    return FacedPoint{n, gap, slip_along(n, point.motion)};
-  };
-  rigid.facing.normal = [plane](const FullMu &mu, const Point &) { return normal_of(plane, mu); };
-  rigid.facing.at_rest = plane.surface;
-  rigid.facing.body_normal = plane.body_normal;
-  rigid.coefficients.push_back({"position of the half-plane", plane.position});
-  if (plane.tilt) rigid.coefficients.push_back({"tilt of the half-plane", plane.tilt});
-  return rigid;
-}
-
-RigidContact rigid_contact(const RigidSurface &surface) {
-  RigidContact rigid{surface.boundary,
-                     {},
-                     surface.friction,
-                     surface.lumped,
-                     {"rigid_surface",
-                      1,
-                      {{"lumped", {surface.lumped ? 1.0 : 0.0}}},
-                      {{"boundary", surface.boundary}},
-                      {{"surface", surface.surface.record}}}};
-  rigid.facing.at = [faced = surface.surface](const FullMu &mu, const PlacedPoint &point,
-                                              const Point &displacement) {
-    const SurfacePoint below =
-        faced(mu, {point.y[0] + displacement[0], point.y[1] + displacement[1], point.y[2]});
-    const Point n{-below.normal[0], -below.normal[1], 0};
-    return FacedPoint{n, below.distance + dot(n, displacement), slip_along(n, point.motion),
-                      below.curvature};
-  };
-  rigid.facing.at_rest = surface.at_rest;
-  rigid.facing.follows_state = true;
-  rigid.facing.body_normal = surface.body_normal;
-  rigid.facing.along_body = bool(surface.body_normal);
-  if (surface.at_rest) rigid.record.parts["at_rest"] = surface.at_rest.record;
-  if (surface.body_normal) rigid.record.parts["body_normal"] = surface.body_normal.record;
-  add_friction(surface.friction, rigid.record);
-  return rigid;
-}
-
 RigidSurface surface_in(const Stored &of) {
   RigidSurface surface{text(of, "boundary"), made<Surface>(part(of, "surface"))};
   if (of.record.parts.contains("at_rest")) surface.at_rest = made<PointMap>(part(of, "at_rest"));
   if (of.record.parts.contains("body_normal"))
     surface.body_normal = made<PointMap>(part(of, "body_normal"));
+  surface.along_body = number(of, "along_body") != 0;
+  surface.partner = static_cast<Partner>(integer(of, "partner"));
+  surface.large = number(of, "large") != 0;
   surface.friction = friction_in(of);
   surface.lumped = number(of, "lumped") != 0;
   return surface;

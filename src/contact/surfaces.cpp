@@ -90,6 +90,30 @@ const Maker<PointMap> composed_maker{"composed", 1, [](const Stored &of) {
                                                           made<PointMap>(part(of, "inner")));
                                      }};
 
+std::function<Surface> plane_function(const Point &normal, const Point &pivot,
+                                      const std::function<Coefficient> &position,
+                                      const std::function<Coefficient> &tilt) {
+  return [=](const FullMu &mu, const Point &y) {
+    const double angle = tilt ? tilt(mu) : 0, c = std::cos(angle), s = std::sin(angle);
+    const Point n{c * normal[0] - s * normal[1], s * normal[0] + c * normal[1], 0};
+    const double distance = position(mu) - (y[0] - pivot[0]) * n[0] - (y[1] - pivot[1]) * n[1];
+    if (!std::isfinite(distance))
+      throw failure("the position or the tilt of a rigid plane is not finite");
+    return SurfacePoint{distance, -1.0 * n, 0};
+  };
+}
+
+const Maker<Surface> plane_maker{
+    "plane", 1, [](const Stored &of) {
+      const std::vector<double> &normal = numbers(of, "normal"), &pivot = numbers(of, "pivot");
+      if (normal.size() != 2 || pivot.size() != 2)
+        throw bad_input("the normal or the pivot of a rigid plane is not two numbers");
+      return plane_function({normal[0], normal[1], 0}, {pivot[0], pivot[1], 0},
+                            made<Coefficient>(part(of, "position")),
+                            of.record.parts.contains("tilt") ? made<Coefficient>(part(of, "tilt"))
+                                                             : Named<Coefficient>());
+    }};
+
 /// Of a disk whose numbers are functions of mu of any one type.
 template <class Number> std::function<Surface> disk_of(Number x, Number y, Number radius) {
   return [=](const FullMu &mu, const Point &point) {
@@ -173,16 +197,6 @@ const Maker<Surface> level_set_maker{"level_set", 1,
                                        return LevelSet(made<PointMap>(part(of, "phi")));
                                      }};
 
-std::function<PointMap> normal_function(const std::function<Surface> &surface,
-                                        const std::function<PointMap> &at) {
-  return [=](const FullMu &mu, const Point &x) { return -1.0 * surface(mu, at(mu, x)).normal; };
-}
-
-const Maker<PointMap> normal_maker{"normal_of_surface", 1, [](const Stored &of) {
-                                     return normal_function(made<Surface>(part(of, "surface")),
-                                                            made<PointMap>(part(of, "at")));
-                                   }};
-
 /// How far along a unit direction the surface is, by Newton's method: from outside a convex body it
 /// is monotone.
 double distance_along(const std::function<Surface> &surface, const FullMu &mu, const Point &from,
@@ -200,33 +214,16 @@ double distance_along(const std::function<Surface> &surface, const FullMu &mu, c
   throw failure("a line from a point of the body misses the rigid surface: use 'gap: closest'");
 }
 
-const Maker<PointValue> gap_maker{
-    "gap_to_surface", 1, [](const Stored &of) -> std::function<PointValue> {
-      return GapToSurface{made<Surface>(part(of, "surface")), made<PointMap>(part(of, "at")),
-                          made<PointMap>(part(of, "normal")),
-                          static_cast<GapKind>(integer(of, "kind"))};
-    }};
-
 } // namespace
 
-GapToSurface::Way GapToSurface::way(const FullMu &mu, const Point &from, const Point &n) const {
-  if (kind == GapKind::closest) {
-    const SurfacePoint there = surface(mu, from);
-    return {-there.distance, there.normal};
+Point to_partner(const std::function<Surface> &surface, Partner partner, const FullMu &mu,
+                 const Point &y, const Point &n) {
+  if (partner == Partner::closest) {
+    const SurfacePoint next = surface(mu, y);
+    return -next.distance * next.normal;
   }
-  const Point direction = kind == GapKind::ray ? n : Point{0, n[1] < 0 ? -1.0 : 1.0, 0};
-  return {distance_along(surface, mu, from, direction), direction};
-}
-
-double GapToSurface::along(const FullMu &mu, const Point &x, const Point &n) const {
-  const Way to = way(mu, at(mu, x), n);
-  return kind == GapKind::ray ? to.length : to.length * dot(to.direction, n);
-}
-
-Point GapToSurface::partner(const FullMu &mu, const Point &x) const {
-  const Point from = at(mu, x);
-  const Way to = way(mu, from, normal(mu, x));
-  return from + to.length * to.direction;
+  const Point direction = partner == Partner::ray ? n : Point{0, n[1] < 0 ? -1.0 : 1.0, 0};
+  return distance_along(surface, mu, y, direction) * direction;
 }
 
 Point on_circles(const std::vector<Circle> &circles, const Point &x) {
@@ -246,6 +243,23 @@ Named<PointMap> composed(const Named<PointMap> &outer, const Named<PointMap> &in
                               {{"outer", outer.record}, {"inner", inner.record}});
 }
 
+Named<Surface> plane_surface(const Point &normal, const Point &pivot,
+                             const Named<Coefficient> &position, const Named<Coefficient> &tilt) {
+  if (!(std::abs(norm(normal) - 1) <= 1e-12) || normal[2] != 0)
+    throw bad_input("the normal of a rigid plane is (" + short_number(normal[0]) + ", " +
+                    short_number(normal[1]) + ", " + short_number(normal[2]) +
+                    "): give one of length 1 in the plane of x and y");
+  std::map<std::string, Record> parts{{"position", position.record}};
+  if (tilt) parts["tilt"] = tilt.record;
+  return plane_maker.named(plane_function(normal, pivot, position, tilt),
+                           {{"normal", {normal[0], normal[1]}}, {"pivot", {pivot[0], pivot[1]}}},
+                           std::move(parts));
+}
+
+bool is_plane(const Named<Surface> &surface) {
+  return surface.record.name == plane_maker.name;
+}
+
 Named<Surface> disk_surface(const Named<Coefficient> &x, const Named<Coefficient> &y,
                             const Named<Coefficient> &radius) {
   return disk_maker.named(disk_function(x, y, radius), {},
@@ -257,21 +271,9 @@ Named<Surface> level_set(const Named<PointMap> &value_and_gradient) {
                                {{"phi", value_and_gradient.record}});
 }
 
-Named<PointMap> normal_of_surface(const Named<Surface> &surface, const Named<PointMap> &at) {
-  return normal_maker.named(normal_function(surface, at), {},
-                            {{"surface", surface.record}, {"at", at.record}});
-}
-
-Named<PointValue> gap_to_surface(const Named<Surface> &surface, const Named<PointMap> &at,
-                                 const Named<PointMap> &normal, GapKind kind) {
-  return gap_maker.named(
-      GapToSurface{surface, at, normal, kind}, {{"kind", {double(kind)}}},
-      {{"surface", surface.record}, {"at", at.record}, {"normal", normal.record}});
-}
-
 FunctionLibrary surface_functions() {
-  return {on_circles_maker, circle_normals_maker, composed_maker, disk_maker,
-          level_set_maker,  normal_maker,         gap_maker};
+  return {on_circles_maker, circle_normals_maker, composed_maker,
+          plane_maker,      disk_maker,           level_set_maker};
 }
 
 } // namespace rbvi

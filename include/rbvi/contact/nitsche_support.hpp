@@ -11,8 +11,8 @@ namespace rbvi {
 /// quadrature, and for the normal of the deformed body.
 ContactRecipe by_nitsche(const RigidContact &rigid, double gamma0);
 
-/// "rigid_support", "half_plane", "rigid_surface" in files, and by Nitsche's method
-/// "nitsche_support", "nitsche_half_plane", "nitsche_surface".
+/// "rigid_support" and "rigid_surface" in files, and by Nitsche's method "nitsche_support" and
+/// "nitsche_surface".
 std::vector<ContactKind> rigid_kinds();
 
 } // namespace rbvi
