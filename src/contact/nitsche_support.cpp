@@ -90,8 +90,9 @@ public:
   double gap_error(const FullMu &mu, const Vector &u, const Vector &lambda) const override {
     return rbvi::gap_error(*this, scene_, layer_.curves.front().facing, mu, u, lambda);
   }
-  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool) override {
-    Grid grid = support_fields(*this, scene_, layer_.curves.front().facing, ends_, mu, u, lambda);
+  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool whole) override {
+    Grid grid =
+        support_fields(*this, scene_, layer_.curves.front().facing, ends_, mu, u, lambda, whole);
     const CurveFields here = nitsche_fields(layer_, 0, mu, at_columns(mesh_, u));
     grid.of_nodes.push_back({"P_n", here.p_n, "Pa"});
     if (layer_.friction()) grid.of_nodes.push_back({"P_tau", here.p_tau, "Pa"});

@@ -137,15 +137,40 @@ double gap_error(const ContactInterface &interface, const Scene &scene, const Fa
   return errors.largest();
 }
 
+namespace {
+
+/// Gap and slip at the middles of edges.
+void add_middles(const ContactInterface &interface, const CurveShape &shape,
+                 const std::vector<int> &vertices, const FullMu &mu, const Vector &u, Grid &grid) {
+  const InterfaceMesh &mesh = interface.mesh();
+  const Vector moved = grid.of_cells.front().values;
+  Vector gap(shape.edges()), slip(shape.edges());
+  const auto of_node = [&](int node) { return Point{u[2 * node], u[2 * node + 1], 0}; };
+  for (Index e = 0; e < shape.edges(); ++e) {
+    const int begin = vertices[shape.ends[e][0]], end = vertices[shape.ends[e][1]];
+    const Point x = (mesh.points[begin] + mesh.points[end]) / 2,
+                here = mesh.degree == 2 ? of_node(middle_node(mesh, e))
+                                        : (of_node(begin) + of_node(end)) / 2;
+    const PointConstraint at = interface.constraint_at(mu, x, here);
+    gap[e] = at.gap - dot(at.direction, here);
+    slip[e] = slip_along(at.direction, {moved[3 * e], moved[3 * e + 1], 0});
+  }
+  grid.of_cells.push_back({"gap_middle", gap, "m"});
+  grid.of_cells.push_back({"slip_middle", slip, "m"});
+}
+
+} // namespace
+
 Grid support_fields(const ContactInterface &interface, const Scene &scene, const Facing &facing,
                     const std::vector<std::array<Index, 2>> &duals, const FullMu &mu,
-                    const Vector &u, const Vector &lambda) {
+                    const Vector &u, const Vector &lambda, bool whole) {
   const InterfaceMesh &mesh = interface.mesh();
   const auto [vertices, shape] = first_curve(mesh);
-  std::vector<CurvePlace> places;
+  std::vector<CurvePlace> places, middles;
   std::vector<int> cells, shown(vertices.size(), -1);
   std::vector<Index> dual_of; // of each place
-  for (Index e = 0; e < shape.edges(); ++e)
+  for (Index e = 0; e < shape.edges(); ++e) {
+    if (whole) middles.push_back({e, 0.5});
     for (const std::size_t end : {0, 1}) {
       int &node = shown[shape.ends[e][end]];
       if (node < 0 || dual_of[node] != duals[e][end]) { // a pressure may end at a vertex
@@ -155,7 +180,8 @@ Grid support_fields(const ContactInterface &interface, const Scene &scene, const
       }
       cells.push_back(node);
     }
-  Grid grid = polyline(scene, mu, mesh, places, std::move(cells), u);
+  }
+  Grid grid = polyline(scene, mu, mesh, places, std::move(cells), u, middles);
   const Vector moved = grid.of_nodes.front().values;
   const Index count = std::ssize(places), of_dual = interface.dual().nodes();
   Vector gap(count), slip(count), pressure(count), shear(count);
@@ -178,6 +204,7 @@ Grid support_fields(const ContactInterface &interface, const Scene &scene, const
   grid.of_nodes.push_back({"slip", slip, "m"});
   add_stress("pressure", pressure, false, grid);
   if (lambda.size() > of_dual) add_stress("tangential_stress", shear, false, grid);
+  if (whole) add_middles(interface, shape, vertices, mu, u, grid);
   return grid;
 }
 

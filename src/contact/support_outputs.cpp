@@ -1,6 +1,8 @@
 #include "rbvi/contact/support_outputs.hpp"
 
 #include "rbvi/contact/interface.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 
 #include <algorithm>
 #include <cmath>

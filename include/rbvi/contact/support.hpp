@@ -93,9 +93,9 @@ double gap_error(const ContactInterface &interface, const Scene &scene, const Fa
 
 /// The curve of a support with motion + u, gap, pressure and tangential stress; see
 /// ContactInterface::fields. `duals`: the dual node that each end of each edge of the curve has
-/// there, -1: none.
+/// there, -1: none. `whole`: as in fields.
 Grid support_fields(const ContactInterface &interface, const Scene &scene, const Facing &facing,
                     const std::vector<std::array<Index, 2>> &duals, const FullMu &mu,
-                    const Vector &u, const Vector &lambda);
+                    const Vector &u, const Vector &lambda, bool whole);
 
 } // namespace rbvi
