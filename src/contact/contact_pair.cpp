@@ -217,43 +217,6 @@ double tangential_force(const Partners &partners, const PairMultipliers &multipl
   return sum;
 }
 
-SlaveLines slave_lines(const Partners &partners, bool whole) {
-  const CurveShape &shape = partners.slave.shape();
-  const auto vertex_at = [&](Index edge, double s) { return shape.ends[edge][s > 0.5 ? 1 : 0]; };
-  std::vector<const PairPoint *> of_vertex(shape.vertices(), nullptr);
-  for (const PairPoint &p : partners.vertices)
-    of_vertex[vertex_at(p.slave_edge, p.s)] = &p;
-  auto cut = partners.cuts.begin();
-  std::vector<std::array<int, 2>> at_vertex(shape.vertices(), {-1, -1}); // facing nothing, or not
-  SlaveLines lines;
-  const auto place = [&](Index edge, double s, bool faced) {
-    const bool inside = s > 0 && s < 1;
-    int own = -1, &number = inside ? own : at_vertex[vertex_at(edge, s)][faced ? 1 : 0];
-    if (number >= 0) return number;
-    number = static_cast<int>(std::ssize(lines.places));
-    lines.places.push_back({edge, s});
-    lines.partners.push_back(!faced ? nullptr : inside ? &*cut++ : of_vertex[vertex_at(edge, s)]);
-    return number;
-  };
-  const auto add = [&](Index edge, double begin, double end, bool faced) {
-    if (!(end > begin) || !(faced || whole)) return;
-    for (const double s : {begin, end})
-      lines.cells.push_back(place(edge, s, faced));
-    lines.faced.push_back(faced);
-  };
-  auto part = partners.faced.begin();
-  for (Index e = 0; e < shape.edges(); ++e) {
-    double last = 0;
-    for (; part != partners.faced.end() && part->edge == e; ++part) {
-      add(e, last, part->begin, false);
-      add(e, part->begin, part->end, true);
-      last = part->end;
-    }
-    add(e, last, 1, false);
-  }
-  return lines;
-}
-
 Vector nodal_forces(const Partners &partners, const PairMultipliers &multipliers,
                     const Vector &lambda) {
   std::vector<int> all(

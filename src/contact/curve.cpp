@@ -149,19 +149,18 @@ std::size_t count_pieces(const InterfaceMesh &mesh) {
 
 namespace {
 
-/// The ends of an edge of one boundary, the body on the left, and the number of its middle node.
-struct EdgeEnds {
-  Point begin, end;
-  int middle;
-};
-
-EdgeEnds ends_of(const InterfaceMesh &mesh, Index e) {
-  const int edge = mesh.edges.empty() ? 0 : mesh.edges[e], *nodes = mesh.nodes_of(e);
-  const auto [i, j] = simplex_edges[edge];
-  return {mesh.points[nodes[i]], mesh.points[nodes[j]], mesh.edges.empty() ? 2 : 3 + edge};
+/// The ends of an edge of one boundary, the body on the left.
+std::array<Point, 2> ends_of(const InterfaceMesh &mesh, Index e) {
+  const auto [i, j] = simplex_edges[mesh.edges.empty() ? 0 : mesh.edges[e]];
+  return {mesh.points[mesh.nodes_of(e)[i]], mesh.points[mesh.nodes_of(e)[j]]};
 }
 
 } // namespace
+
+int middle_node(const InterfaceMesh &mesh, Index e) {
+  if (mesh.degree == 1) return mesh.nodes_of(e)[0];
+  return mesh.nodes_of(e)[mesh.edges.empty() ? 2 : 3 + mesh.edges[e]];
+}
 
 void check_body_normal(const Scene &scene, const Facing &facing, const InterfaceMesh &mesh) {
   constexpr double scatter = 0.02; // of vertices near each other
@@ -170,7 +169,7 @@ void check_body_normal(const Scene &scene, const Facing &facing, const Interface
   for (const Parameter &parameter : scene.parameters.all)
     mu.push_back(parameter.value);
   for (Index e = 0; e < mesh.count(); ++e) {
-    const auto [begin, end, unused] = ends_of(mesh, e);
+    const auto [begin, end] = ends_of(mesh, e);
     const Point along = scene.map(mu, end) - scene.map(mu, begin), middle = (begin + end) / 2,
                 n = facing.body_normal(mu, middle),
                 of_edge = Point{along[1], -along[0], 0} / norm(along);
@@ -192,8 +191,8 @@ Facing on_arcs(Facing facing, const InterfaceMesh &mesh) {
   constexpr double straight = 1e-9; // of the chord
   std::vector<Arc> arcs;
   for (Index e = 0; e < mesh.count() && mesh.degree == 2; ++e) {
-    const auto [begin, end, number] = ends_of(mesh, e);
-    const Point &middle = mesh.points[mesh.nodes_of(e)[number]];
+    const auto [begin, end] = ends_of(mesh, e);
+    const Point &middle = mesh.points[middle_node(mesh, e)];
     const Point rise = middle - (begin + end) / 2, chord = end - begin;
     const double height = norm(rise), half = norm(chord) / 2;
     if (height <= straight * half) continue;
@@ -237,23 +236,38 @@ SparseMatrix linear_gram(const std::vector<Point> &points, const CurveShape &sha
 }
 
 Grid polyline(const Scene &scene, const FullMu &mu, const InterfaceMesh &mesh,
-              const std::vector<CurvePlace> &places, std::vector<int> cells, const Vector &u) {
+              const std::vector<CurvePlace> &places, std::vector<int> cells, const Vector &u,
+              const std::vector<CurvePlace> &middles) {
   const auto [vertices, shape] = first_curve(mesh);
+  const std::vector<Index> entities = edges_of(mesh, 0);
   std::vector<Point> ends;
   for (const int vertex : vertices)
     ends.push_back(mesh.points[vertex]);
   const Matrix mapped = mapped_points(scene, mu, ends);
   const Vector moved = moved_nodes(scene, mu, mesh, u);
+  const auto moved_at = [&, &numbers = vertices,
+                         &ends = shape.ends](const std::vector<CurvePlace> &at) {
+    Vector result(3 * std::ssize(at));
+    for (Index k = 0; k < std::ssize(at); ++k) {
+      const auto [edge, s] = at[k];
+      const std::array<double, 3> phi = edge_functions(mesh.degree, s);
+      const std::array<int, 3> nodes{numbers[ends[edge][0]], numbers[ends[edge][1]],
+                                     middle_node(mesh, entities[edge])};
+      result.segment<3>(3 * k).setZero();
+      for (std::size_t i = 0; i < nodes.size(); ++i)
+        result.segment<3>(3 * k) += phi[i] * moved.segment<3>(Index{3} * nodes[i]);
+    }
+    return result;
+  };
   Matrix points(std::ssize(places), scene.dim);
-  Vector of_nodes(3 * points.rows());
   for (Index k = 0; k < points.rows(); ++k) {
     const auto [edge, s] = places[k];
     const auto [a, b] = shape.ends[edge];
     points.row(k) = (1 - s) * mapped.row(a) + s * mapped.row(b);
-    of_nodes.segment<3>(3 * k) = (1 - s) * moved.segment<3>(Index{3} * vertices[a]) +
-                                 s * moved.segment<3>(Index{3} * vertices[b]);
   }
-  return {std::move(points), std::move(cells), 2, {{"u", of_nodes, "m"}}, {}, {}};
+  Grid grid{std::move(points), std::move(cells), 2, {{"u", moved_at(places), "m"}}, {}, {}};
+  if (!middles.empty()) grid.of_cells.push_back({"u_middle", moved_at(middles), "m"});
+  return grid;
 }
 
 void add_stress(const std::string &name, const Vector &values, bool of_edges, Grid &grid) {

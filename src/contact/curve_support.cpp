@@ -44,7 +44,7 @@ public:
   double gap_error(const FullMu &mu, const Vector &u, const Vector &lambda) const override {
     return rbvi::gap_error(*this, scene_, facing_, mu, u, lambda);
   }
-  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool) override;
+  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool whole) override;
 
   const EntitySum *entity_sum() const override { return follows_state() ? nullptr : this; }
   bool follows_state() const override { return facing_.follows_state; }
@@ -213,14 +213,14 @@ double CurveSupport::tangential_force(const Matrix &mapped, const Vector &lambda
   return sum;
 }
 
-Grid CurveSupport::fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool) {
+Grid CurveSupport::fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool whole) {
   std::vector<std::array<Index, 2>> duals;
   for (Index e = 0; e < mesh_.count(); ++e) {
     const std::span<const int> rows = rows_of(e);
     const std::size_t first = mesh_.nodes_of(e)[0] == shape_.ends[e][0] ? 0 : 1;
     duals.push_back({rows[first], rows[1 - first]});
   }
-  return support_fields(*this, scene_, facing_, duals, mu, u, lambda);
+  return support_fields(*this, scene_, facing_, duals, mu, u, lambda, whole);
 }
 
 void CurveSupport::outputs(const FullMu &mu, const ContactOperators &operators,
@@ -375,8 +375,6 @@ ContactRecipe by_multipliers(const RigidContact &rigid) {
   ContactRecipe recipe;
   recipe.entities = {InterfaceEntities::Kind::curves, {rigid.boundary}, {}, rigid.curved};
   add_friction(rigid.friction, recipe);
-  recipe.coefficients.insert(recipe.coefficients.end(), rigid.coefficients.begin(),
-                             rigid.coefficients.end());
   recipe.follows_state = rigid.facing.follows_state;
   recipe.separable = !recipe.follows_state;
   recipe.nodal = rigid.lumped && recipe.separable;

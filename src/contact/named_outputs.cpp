@@ -37,6 +37,8 @@ private:
   }
   /// A field at vertices, or one that is constant on cells.
   EndValues field(const std::string &name, double otherwise) const;
+  /// A field at the middles of cells, `mean` where the grid has none.
+  Matrix middles(const std::string &name, const Matrix &mean) const;
   EndValues sticks(const FrictionBound &bound) const;
   int node(Index end, Index cell) const { return grid_.cells[2 * cell + end]; }
   double length(Index cell) const {
@@ -54,8 +56,23 @@ private:
   Eigen::Matrix2Xi beside_; ///< of each end the cell on its other side, -1: none
   bool signed_;             ///< Nitsche's method: the last two are negative outside
   EndValues pressure_, gap_, shear_, slip_;
-  EndValues in_contact_, sticks_; ///< > 0 there, else 0
+  EndValues in_contact_, sticks_;   ///< > 0 there, else 0
+  Matrix moved_, u_middle_;         ///< components x nodes, x cells
+  Matrix gap_middle_, slip_middle_; ///< 1 x cells
 };
+
+/// Of degree 2, from its values at 0, 1 and 1/2.
+double along(double s, double first, double last, double middle) {
+  return (1 - s) * first + s * last + 4 * s * (1 - s) * (middle - (first + last) / 2);
+}
+
+/// Where such a field is zero, whose values at 0 and 1 have different signs.
+double zero_of(double first, double last, double middle) {
+  const double c = 2 * (first + last - 2 * middle), b = last - first - c,
+               q = -(b + std::copysign(std::sqrt(b * b - 4 * c * first), b)) / 2;
+  const double root = first / q;
+  return root > 0 && root < 1 ? root : q / c;
+}
 
 Lines::Lines(const Grid &grid, const FrictionBound &bound, double least)
     : grid_(grid), cells_(std::ssize(grid.cells) / 2),
@@ -69,6 +86,14 @@ Lines::Lines(const Grid &grid, const FrictionBound &bound, double least)
     for (const Index one : ends)
       for (const Index other : ends)
         if (one / 2 != other / 2) beside_(one) = static_cast<int>(other / 2);
+  const auto u = std::ranges::find(grid.of_nodes, "u", &Field::name);
+  moved_ = u->values.reshaped(3, grid.points.rows());
+  Matrix mean(3, cells_);
+  for (Index k = 0; k < cells_; ++k)
+    mean.col(k) = (moved_.col(node(0, k)) + moved_.col(node(1, k))) / 2;
+  u_middle_ = middles("u_middle", mean);
+  gap_middle_ = middles("gap_middle", gap_.colwise().mean());
+  slip_middle_ = middles("slip_middle", slip_.colwise().mean());
   in_contact_ = (pressure_.array() > least).select(pressure_, 0);
   if (signed_) in_contact_ = -field("P_n", 0);
   sticks_ = sticks(bound);
@@ -94,6 +119,12 @@ EndValues Lines::field(const std::string &name, double otherwise) const {
   if (const auto found = find(grid_.of_nodes); found != grid_.of_nodes.end())
     return found->values(grid_.cells).reshaped(2, cells_);
   return EndValues::Constant(2, cells_, otherwise);
+}
+
+Matrix Lines::middles(const std::string &name, const Matrix &mean) const {
+  const auto found = std::ranges::find(grid_.of_cells, name, &Field::name);
+  if (found == grid_.of_cells.end()) return mean;
+  return found->values.reshaped(mean.rows(), cells_);
 }
 
 NodesBeside Lines::beside(Index end, Index cell, const EndValues &values) const {
@@ -143,18 +174,20 @@ Part Lines::stick(Index cell, const Part &contact) const {
 OutputFields Lines::fields_at(Index cell, double s) const {
   OutputFields fields;
   fields.fill(none);
-  const auto along = [&](double first, double last) { return (1 - s) * first + s * last; };
-  const auto of = [&](const EndValues &values) { return along(values(0, cell), values(1, cell)); };
-  const Vector &moved = std::ranges::find(grid_.of_nodes, "u", &Field::name)->values;
+  const auto linear = [&](double first, double last) { return (1 - s) * first + s * last; };
+  const auto of = [&](const EndValues &values) { return linear(values(0, cell), values(1, cell)); };
+  const auto bent = [&](const EndValues &ends, const Matrix &middle) {
+    return along(s, ends(0, cell), ends(1, cell), middle(0, cell));
+  };
   const Index a = node(0, cell), b = node(1, cell);
-  fields[field::x] = along(grid_.points(a, 0), grid_.points(b, 0));
-  fields[field::y] = along(grid_.points(a, 1), grid_.points(b, 1));
-  fields[field::ux] = along(moved[3 * a], moved[3 * b]);
-  fields[field::uy] = along(moved[3 * a + 1], moved[3 * b + 1]);
+  fields[field::x] = linear(grid_.points(a, 0), grid_.points(b, 0));
+  fields[field::y] = linear(grid_.points(a, 1), grid_.points(b, 1));
+  fields[field::ux] = along(s, moved_(0, a), moved_(0, b), u_middle_(0, cell));
+  fields[field::uy] = along(s, moved_(1, a), moved_(1, b), u_middle_(1, cell));
   fields[field::pressure] = of(pressure_);
-  fields[field::gap] = of(gap_);
+  fields[field::gap] = bent(gap_, gap_middle_);
   fields[field::tangential] = of(shear_);
-  fields[field::slip] = of(slip_);
+  fields[field::slip] = bent(slip_, slip_middle_);
   return fields;
 }
 
@@ -163,28 +196,29 @@ std::vector<ContactLine> Lines::cut() const {
   for (Index k = 0; k < cells_; ++k) {
     const Part contact = zone(k, in_contact_, gap_), sticks = stick(k, contact);
     std::vector<double> cuts{0, contact.from, contact.to, sticks.from, sticks.to, 1};
-    for (const EndValues *values : {&shear_, &slip_})
-      if (const double a = (*values)(0, k), b = (*values)(1, k); a * b < 0)
-        cuts.push_back(a / (a - b));
+    if (const double a = shear_(0, k), b = shear_(1, k); a * b < 0) cuts.push_back(a / (a - b));
+    if (const double a = slip_(0, k), b = slip_(1, k); a * b < 0)
+      cuts.push_back(zero_of(a, b, slip_middle_(0, k)));
     std::ranges::sort(cuts);
     const bool first = in_contact_(0, k) > 0, ends = first != (in_contact_(1, k) > 0);
     const Index inside = first ? 0 : 1;
     for (std::size_t i = 1; i < cuts.size(); ++i) {
       const double from = cuts[i - 1], to = cuts[i];
       if (!(to > from)) continue;
-      ContactLine line{{fields_at(k, from), fields_at(k, to)}, {}};
+      const std::array<double, 3> places{from, to, (from + to) / 2};
+      ContactLine line{{fields_at(k, places[0]), fields_at(k, places[1]), fields_at(k, places[2])},
+                       {}};
       for (OutputFields &fields : line.fields) {
         fields[field::contact] = contact.has((from + to) / 2) ? 1 : 0;
         fields[field::stick] = sticks.has((from + to) / 2) ? 1 : 0;
       }
       line.seen = line.fields;
-      for (const std::size_t end : {0, 1}) {
-        if (!ends) continue;
-        const double s = end == 0 ? from : to, at = first ? contact.to : contact.from,
+      for (std::size_t place = 0; ends && place < places.size(); ++place) {
+        const double s = places[place], at = first ? contact.to : contact.from,
                      in = first ? (at - s) / at : (s - at) / (1 - at),
                      out = first ? (s - at) / (1 - at) : (at - s) / at;
-        line.seen[end][field::pressure] = pressure_(inside, k) * std::max(0.0, in);
-        line.seen[end][field::gap] =
+        line.seen[place][field::pressure] = pressure_(inside, k) * std::max(0.0, in);
+        line.seen[place][field::gap] =
             gap_(inside, k) * std::max(0.0, in) + gap_(1 - inside, k) * std::max(0.0, out);
       }
       lines.push_back(line);
@@ -194,18 +228,18 @@ std::vector<ContactLine> Lines::cut() const {
 }
 
 void add_lines(const std::vector<ContactLine> &lines, bool turned, OutputLines &sums) {
-  const auto along = [&](std::array<OutputFields, 2> ContactLine::*fields) {
+  const auto on = [&](std::array<OutputFields, 3> ContactLine::*fields) {
     return [&lines, fields](std::size_t line, double s) {
-      const auto &[first, last] = lines[line].*fields;
+      const auto &[first, last, middle] = lines[line].*fields;
       OutputFields at;
       for (std::size_t i = 0; i < at.size(); ++i)
-        at[i] = (1 - s) * first[i] + s * last[i];
+        at[i] = along(s, first[i], last[i], middle[i]);
       return at;
     };
   };
-  sums.add(lines.size(), along(&ContactLine::fields), along(&ContactLine::seen),
+  sums.add(lines.size(), on(&ContactLine::fields), on(&ContactLine::seen),
            [&](std::size_t line, const OutputFields &at) {
-             const auto &[first, last] = lines[line].fields;
+             const auto &[first, last, middle] = lines[line].fields;
              return std::hypot(last[field::x] - first[field::x], last[field::y] - first[field::y]) *
                     circumference(turned, {at[field::x], 0, 0});
            });

@@ -90,8 +90,9 @@ public:
   double gap_error(const FullMu &mu, const Vector &u, const Vector &lambda) const override {
     return rbvi::gap_error(*this, scene_, layer_.curves.front().facing, mu, u, lambda);
   }
-  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool) override {
-    Grid grid = support_fields(*this, scene_, layer_.curves.front().facing, ends_, mu, u, lambda);
+  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool whole) override {
+    Grid grid =
+        support_fields(*this, scene_, layer_.curves.front().facing, ends_, mu, u, lambda, whole);
     const CurveFields here = nitsche_fields(layer_, 0, mu, at_columns(mesh_, u));
     grid.of_nodes.push_back({"P_n", here.p_n, "Pa"});
     if (layer_.friction()) grid.of_nodes.push_back({"P_tau", here.p_tau, "Pa"});
@@ -133,8 +134,6 @@ ContactRecipe by_nitsche(const RigidContact &rigid, double gamma0) {
   recipe.entities = {InterfaceEntities::Kind::cells_beside, {rigid.boundary}, {}, rigid.curved};
   recipe.formulation = Formulation::nitsche;
   add_friction(rigid.friction, recipe);
-  recipe.coefficients.insert(recipe.coefficients.end(), rigid.coefficients.begin(),
-                             rigid.coefficients.end());
   recipe.separable = false;
   recipe.make = [rigid, gamma0](const Scene &scene, InterfaceMesh mesh) {
     return std::make_unique<NitscheInterface>(scene, std::move(mesh),

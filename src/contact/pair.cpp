@@ -302,7 +302,8 @@ Grid PairInterface::fields(const FullMu &mu, const Vector &u, const Vector &lamb
   const Vector state = at_columns(mesh_, u), moved = moved_nodes(scene_, mu, mesh_, u);
   const Partners found = partners(mu, {state});
   const SlaveLines of = slave_lines(found, whole);
-  Grid grid = polyline(scene_, mu, mesh_, of.places, of.cells, u);
+  Grid grid = polyline(scene_, mu, mesh_, of.places, of.cells, u,
+                       whole ? middles_of(of) : std::vector<CurvePlace>());
   std::vector<Point> free(mesh_.points.size(), Point{}), all(mesh_.points.size());
   for (std::size_t k = 0; k < 2 * free.size(); ++k) {
     if (mesh_.dofs[k] >= 0) free[k / 2][k % 2] = state[mesh_.dofs[k]];
@@ -312,6 +313,8 @@ Grid PairInterface::fields(const FullMu &mu, const Vector &u, const Vector &lamb
   const auto apart = [](const Curves &by, const PairPoint &p) {
     return by.slave.at(p.slave_edge, p.s) - by.master.at(p.master_edge, p.t);
   };
+  const auto gap_at = [&](const auto &p) { return p.gap + dot(p.normal, apart(by_free, p)); };
+  const auto slip_at = [&](const auto &p) { return slip_along(-1.0 * p.normal, apart(by_all, p)); };
   const bool constant = multipliers_.space() == MultiplierSpace::macro_edges;
   const Index nodes = std::ssize(of.places), edges = std::ssize(of.faced),
               values = constant ? edges : nodes, count = multipliers_.count();
@@ -324,9 +327,9 @@ Grid PairInterface::fields(const FullMu &mu, const Vector &u, const Vector &lamb
   std::vector<Point> normals(of.places.size(), Point{});
   for (Index k = 0; k < nodes; ++k)
     if (const PairPoint *p = of.partners[k]) {
-      normals[k] = {-p->normal[0], -p->normal[1], 0};
-      gap[k] = p->gap + dot(p->normal, apart(by_free, *p));
-      slip[k] = slip_along(normals[k], apart(by_all, *p));
+      normals[k] = -1.0 * p->normal;
+      gap[k] = gap_at(*p);
+      slip[k] = slip_at(*p);
       if (!constant) put_stress(k, of.places[k]);
     }
   for (Index k = 0; k < edges && constant; ++k) {
@@ -337,6 +340,9 @@ Grid PairInterface::fields(const FullMu &mu, const Vector &u, const Vector &lamb
   grid.of_nodes.push_back({"slip", slip, "m"});
   add_stress("pressure", pressure, constant, grid);
   if (friction()) add_stress("tangential_stress", shear, constant, grid);
+  if (!whole) return grid;
+  grid.of_cells.push_back({"gap_middle", fitted_middles(found, of, gap, gap_at), "m"});
+  grid.of_cells.push_back({"slip_middle", fitted_middles(found, of, slip, slip_at), "m"});
   return grid;
 }
 

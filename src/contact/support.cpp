@@ -11,47 +11,86 @@ namespace rbvi {
 
 namespace {
 
-Point normal_of(const HalfPlane &plane, const FullMu &mu) {
-  const double angle = plane.tilt ? plane.tilt(mu) : 0;
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * plane.normal[0] - s * plane.normal[1], s * plane.normal[0] + c * plane.normal[1], 0};
+/// A point of the boundary at rest.
+struct AtRest {
+  std::function<Surface> surface;
+  std::function<PointMap> body_normal; ///< of contact; empty: that of the surface
+  Partner partner;
+
+  struct Faced {
+    Point normal, way; ///< to the partner
+  };
+  Faced operator()(const FullMu &mu, const PlacedPoint &point) const {
+    if (partner != Partner::closest || body_normal) {
+      const Point n = body_normal ? body_normal(mu, point.x) : -1.0 * surface(mu, point.y).normal;
+      return {n, to_partner(surface, partner, mu, point.y, n)};
+    }
+    const SurfacePoint next = surface(mu, point.y);
+    return {-1.0 * next.normal, -next.distance * next.normal};
+  }
+};
+
+Facing faced_at_rest(const RigidSurface &of) {
+  const AtRest faced{of.surface, of.along_body ? of.body_normal : std::function<PointMap>(),
+                     of.partner};
+  Facing facing;
+  facing.at = [faced](const FullMu &mu, const PlacedPoint &point, const Point &) {
+    const auto [n, way] = faced(mu, point);
+    return FacedPoint{n, dot(way, n) - dot(point.motion, n), slip_along(n, point.motion)};
+  };
+  facing.normal = faced.body_normal;
+  if (is_plane(of.surface) && !of.along_body && of.partner == Partner::closest)
+    return facing; // its condition is exact wherever the body is
+  facing.partner = [faced](const FullMu &mu, const PlacedPoint &point) {
+    return point.y + faced(mu, point).way;
+  };
+  facing.distance = [surface = of.surface](const FullMu &mu, const PlacedPoint &point,
+                                           const Point &moved) {
+    return surface(mu, point.y + moved).distance;
+  };
+  return facing;
 }
 
-/// What a point faces along its normal; distance(mu, x, normal) without the motion.
-template <class Distance>
-auto faced(const std::function<PointMap> &normal, const Distance &distance) {
-  return [=](const FullMu &mu, const PlacedPoint &point, const Point &) {
-    const Point n = normal(mu, point.x);
-    return FacedPoint{n, distance(mu, point.x, n) - dot(point.motion, n),
-                      slip_along(n, point.motion)};
+Facing faced_where_it_is(const RigidSurface &of) {
+  Facing facing;
+  facing.at = [surface = of.surface](const FullMu &mu, const PlacedPoint &point,
+                                     const Point &displacement) {
+    const SurfacePoint next = surface(mu, point.y + point.motion + displacement);
+    const Point n = -1.0 * next.normal;
+    return FacedPoint{n, next.distance + dot(n, displacement), slip_along(n, point.motion),
+                      next.curvature};
   };
+  facing.follows_state = true;
+  facing.along_body = of.along_body;
+  return facing;
 }
 
 } // namespace
 
 RigidContact rigid_contact(const Support &support) {
   RigidContact rigid{support.boundary, {}, support.friction, support.lumped};
-  if (const auto *to_surface = support.gap.target<GapToSurface>()) { // it needs no other normal
-    rigid.facing.at =
-        faced(support.normal, [to = *to_surface](const FullMu &mu, const Point &x, const Point &n) {
-          return to.along(mu, x, n);
-        });
-    rigid.facing.distance = [to = *to_surface](const FullMu &mu, const Point &x,
-                                               const Point &moved) {
-      return to.surface(mu, to.at(mu, x) + moved).distance;
-    };
-    rigid.facing.partner = [to = *to_surface](const FullMu &mu, const Point &x) {
-      return to.partner(mu, x);
-    };
-  } else {
-    rigid.facing.at =
-        faced(support.normal, [gap = support.gap](const FullMu &mu, const Point &x, const Point &) {
-          return gap(mu, x);
-        });
-  }
+  rigid.facing.at = [normal = support.normal,
+                     gap = support.gap](const FullMu &mu, const PlacedPoint &point, const Point &) {
+    const Point n = normal(mu, point.x);
+    return FacedPoint{n, gap(mu, point.x) - dot(point.motion, n), slip_along(n, point.motion)};
+  };
   rigid.facing.normal = support.normal;
-  rigid.facing.asks_place = false;
   rigid.facing.body_normal = support.body_normal;
+  return rigid;
+}
+
+RigidContact rigid_contact(const RigidSurface &surface) {
+  if (surface.along_body && !surface.body_normal)
+    throw bad_input("contact along the normal of the body needs a boundary on a circle ('curves:') "
+                    "and a map that does not turn or stretch it");
+  if (surface.large && surface.partner != Partner::closest)
+    throw bad_input("kinematics: large measures the gap to the next point: leave out gap");
+  RigidContact rigid{surface.boundary,
+                     surface.large ? faced_where_it_is(surface) : faced_at_rest(surface),
+                     surface.friction, surface.lumped};
+  rigid.facing.at_rest = surface.at_rest;
+  // Where the body is followed its stress acts on the edges (Nitsche's method).
+  if (!surface.large || surface.along_body) rigid.facing.body_normal = surface.body_normal;
   return rigid;
 }
 
@@ -69,22 +108,48 @@ double gap_error(const ContactInterface &interface, const Scene &scene, const Fa
     const double way = dot(normal, moved),
                  left = gap - normal[0] * u[2 * node] - normal[1] * u[2 * node + 1];
     try {
-      errors.add(lambda[static_cast<Index>(k)], way, left, facing.distance(mu, x, moved));
+      errors.add(lambda[static_cast<Index>(k)], way, left,
+                 facing.distance(mu, place(scene, facing, mu, x), moved));
     } catch (const Error &) { // nothing is faced from there
     }
   }
   return errors.largest();
 }
 
+namespace {
+
+/// Gap and slip at the middles of edges.
+void add_middles(const ContactInterface &interface, const CurveShape &shape,
+                 const std::vector<int> &vertices, const FullMu &mu, const Vector &u, Grid &grid) {
+  const InterfaceMesh &mesh = interface.mesh();
+  const Vector moved = grid.of_cells.front().values;
+  Vector gap(shape.edges()), slip(shape.edges());
+  const auto of_node = [&](int node) { return Point{u[2 * node], u[2 * node + 1], 0}; };
+  for (Index e = 0; e < shape.edges(); ++e) {
+    const int begin = vertices[shape.ends[e][0]], end = vertices[shape.ends[e][1]];
+    const Point x = (mesh.points[begin] + mesh.points[end]) / 2,
+                here = mesh.degree == 2 ? of_node(middle_node(mesh, e))
+                                        : (of_node(begin) + of_node(end)) / 2;
+    const PointConstraint at = interface.constraint_at(mu, x, here);
+    gap[e] = at.gap - dot(at.direction, here);
+    slip[e] = slip_along(at.direction, {moved[3 * e], moved[3 * e + 1], 0});
+  }
+  grid.of_cells.push_back({"gap_middle", gap, "m"});
+  grid.of_cells.push_back({"slip_middle", slip, "m"});
+}
+
+} // namespace
+
 Grid support_fields(const ContactInterface &interface, const Scene &scene, const Facing &facing,
                     const std::vector<std::array<Index, 2>> &duals, const FullMu &mu,
-                    const Vector &u, const Vector &lambda) {
+                    const Vector &u, const Vector &lambda, bool whole) {
   const InterfaceMesh &mesh = interface.mesh();
   const auto [vertices, shape] = first_curve(mesh);
-  std::vector<CurvePlace> places;
+  std::vector<CurvePlace> places, middles;
   std::vector<int> cells, shown(vertices.size(), -1);
   std::vector<Index> dual_of; // of each place
-  for (Index e = 0; e < shape.edges(); ++e)
+  for (Index e = 0; e < shape.edges(); ++e) {
+    if (whole) middles.push_back({e, 0.5});
     for (const std::size_t end : {0, 1}) {
       int &node = shown[shape.ends[e][end]];
       if (node < 0 || dual_of[node] != duals[e][end]) { // a pressure may end at a vertex
@@ -94,7 +159,8 @@ Grid support_fields(const ContactInterface &interface, const Scene &scene, const
       }
       cells.push_back(node);
     }
-  Grid grid = polyline(scene, mu, mesh, places, std::move(cells), u);
+  }
+  Grid grid = polyline(scene, mu, mesh, places, std::move(cells), u, middles);
   const Vector moved = grid.of_nodes.front().values;
   const Index count = std::ssize(places), of_dual = interface.dual().nodes();
   Vector gap(count), slip(count), pressure(count), shear(count);
@@ -107,8 +173,9 @@ Grid support_fields(const ContactInterface &interface, const Scene &scene, const
     slip[k] = slip_along(at.direction, {moved[3 * k], moved[3 * k + 1], 0});
     normals.push_back(at.direction);
     if (facing.partner)
-      ways.push_back(facing.partner(mu, x) - Point{grid.points(k, 0) + moved[3 * k],
-                                                   grid.points(k, 1) + moved[3 * k + 1], 0});
+      ways.push_back(
+          facing.partner(mu, place(scene, facing, mu, x)) -
+          Point{grid.points(k, 0) + moved[3 * k], grid.points(k, 1) + moved[3 * k + 1], 0});
     pressure[k] = dual_of[k] < 0 ? 0 : lambda[dual_of[k]];
     shear[k] = dual_of[k] < 0 || lambda.size() == of_dual ? 0 : lambda[of_dual + dual_of[k]];
   }
@@ -116,46 +183,8 @@ Grid support_fields(const ContactInterface &interface, const Scene &scene, const
   grid.of_nodes.push_back({"slip", slip, "m"});
   add_stress("pressure", pressure, false, grid);
   if (lambda.size() > of_dual) add_stress("tangential_stress", shear, false, grid);
+  if (whole) add_middles(interface, shape, vertices, mu, u, grid);
   return grid;
-}
-
-RigidContact rigid_contact(const HalfPlane &plane) {
-  const double length = std::hypot(plane.normal[0], plane.normal[1], plane.normal[2]);
-  if (!(std::abs(length - 1) <= 1e-12) || plane.normal[2] != 0)
-    throw bad_input("the normal of the half-plane on '" + plane.boundary + "' is (" +
-                    short_number(plane.normal[0]) + ", " + short_number(plane.normal[1]) + ", " +
-                    short_number(plane.normal[2]) +
-                    "): give one of length 1 in the plane of x and y");
-  RigidContact rigid{plane.boundary, {}, plane.friction, plane.lumped};
-  rigid.facing.at = [plane](const FullMu &mu, const PlacedPoint &point, const Point &) {
-    const Point n = normal_of(plane, mu);
-    const double gap = plane.position(mu) - (point.y[0] - plane.pivot[0]) * n[0] -
-                       (point.y[1] - plane.pivot[1]) * n[1];
-    return FacedPoint{n, gap, slip_along(n, point.motion)};
-  };
-  rigid.facing.normal = [plane](const FullMu &mu, const Point &) { return normal_of(plane, mu); };
-  rigid.facing.at_rest = plane.surface;
-  rigid.facing.body_normal = plane.body_normal;
-  rigid.coefficients.push_back({"position of the half-plane", plane.position});
-  if (plane.tilt) rigid.coefficients.push_back({"tilt of the half-plane", plane.tilt});
-  return rigid;
-}
-
-RigidContact rigid_contact(const RigidSurface &surface) {
-  RigidContact rigid{surface.boundary, {}, surface.friction, surface.lumped};
-  rigid.facing.at = [faced = surface.surface](const FullMu &mu, const PlacedPoint &point,
-                                              const Point &displacement) {
-    const SurfacePoint below =
-        faced(mu, {point.y[0] + displacement[0], point.y[1] + displacement[1], point.y[2]});
-    const Point n{-below.normal[0], -below.normal[1], 0};
-    return FacedPoint{n, below.distance + dot(n, displacement), slip_along(n, point.motion),
-                      below.curvature};
-  };
-  rigid.facing.at_rest = surface.at_rest;
-  rigid.facing.follows_state = true;
-  rigid.facing.body_normal = surface.body_normal;
-  rigid.facing.along_body = bool(surface.body_normal);
-  return rigid;
 }
 
 } // namespace rbvi

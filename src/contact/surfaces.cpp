@@ -33,6 +33,19 @@ Point normal_of_circle(const Circle &circle, const Point &x) {
   return (circle.hole ? -1 : 1) / norm(out) * out;
 }
 
+struct Plane {
+  Point normal, pivot;
+  std::function<Coefficient> position, tilt;
+  SurfacePoint operator()(const FullMu &mu, const Point &y) const {
+    const double angle = tilt ? tilt(mu) : 0, c = std::cos(angle), s = std::sin(angle);
+    const Point n{c * normal[0] - s * normal[1], s * normal[0] + c * normal[1], 0};
+    const double distance = position(mu) - (y[0] - pivot[0]) * n[0] - (y[1] - pivot[1]) * n[1];
+    if (!std::isfinite(distance))
+      throw failure("the position or the tilt of a rigid plane is not finite");
+    return {distance, -1.0 * n, 0};
+  }
+};
+
 /// Of a disk whose numbers are functions of mu of any one type.
 template <class Number> std::function<Surface> disk_of(Number x, Number y, Number radius) {
   return [=](const FullMu &mu, const Point &point) {
@@ -114,24 +127,14 @@ double distance_along(const std::function<Surface> &surface, const FullMu &mu, c
 
 } // namespace
 
-GapToSurface::Way GapToSurface::way(const FullMu &mu, const Point &from, const Point &n) const {
-  if (kind == GapKind::closest) {
-    const SurfacePoint there = surface(mu, from);
-    return {-there.distance, there.normal};
+Point to_partner(const std::function<Surface> &surface, Partner partner, const FullMu &mu,
+                 const Point &y, const Point &n) {
+  if (partner == Partner::closest) {
+    const SurfacePoint next = surface(mu, y);
+    return -next.distance * next.normal;
   }
-  const Point direction = kind == GapKind::ray ? n : Point{0, n[1] < 0 ? -1.0 : 1.0, 0};
-  return {distance_along(surface, mu, from, direction), direction};
-}
-
-double GapToSurface::along(const FullMu &mu, const Point &x, const Point &n) const {
-  const Way to = way(mu, at(mu, x), n);
-  return kind == GapKind::ray ? to.length : to.length * dot(to.direction, n);
-}
-
-Point GapToSurface::partner(const FullMu &mu, const Point &x) const {
-  const Point from = at(mu, x);
-  const Way to = way(mu, from, normal(mu, x));
-  return from + to.length * to.direction;
+  const Point direction = partner == Partner::ray ? n : Point{0, n[1] < 0 ? -1.0 : 1.0, 0};
+  return distance_along(surface, mu, y, direction) * direction;
 }
 
 Point on_circles(const std::vector<Circle> &circles, const Point &x) {
@@ -164,6 +167,20 @@ std::function<PointMap> composed(const std::function<PointMap> &outer,
   return [=](const FullMu &mu, const Point &x) { return outer(mu, inner(mu, x)); };
 }
 
+std::function<Surface> plane_surface(const Point &normal, const Point &pivot,
+                                     const std::function<Coefficient> &position,
+                                     const std::function<Coefficient> &tilt) {
+  if (!(std::abs(norm(normal) - 1) <= 1e-12) || normal[2] != 0)
+    throw bad_input("the normal of a rigid plane is (" + short_number(normal[0]) + ", " +
+                    short_number(normal[1]) + ", " + short_number(normal[2]) +
+                    "): give one of length 1 in the plane of x and y");
+  return Plane{normal, pivot, position, tilt};
+}
+
+bool is_plane(const std::function<Surface> &surface) {
+  return surface.target<Plane>() != nullptr;
+}
+
 std::function<Surface> disk_surface(const std::function<Coefficient> &x,
                                     const std::function<Coefficient> &y,
                                     const std::function<Coefficient> &radius) {
@@ -176,17 +193,6 @@ std::function<Surface> disk_surface(const std::function<Coefficient> &x,
 
 std::function<Surface> level_set(const std::function<PointMap> &value_and_gradient) {
   return LevelSet(value_and_gradient);
-}
-
-std::function<PointMap> normal_of_surface(const std::function<Surface> &surface,
-                                          const std::function<PointMap> &at) {
-  return [=](const FullMu &mu, const Point &x) { return -1.0 * surface(mu, at(mu, x)).normal; };
-}
-
-std::function<PointValue> gap_to_surface(const std::function<Surface> &surface,
-                                         const std::function<PointMap> &at,
-                                         const std::function<PointMap> &normal, GapKind kind) {
-  return GapToSurface{surface, at, normal, kind};
 }
 
 } // namespace rbvi

@@ -58,7 +58,7 @@ void ConeSolver::set_b(const Vector &theta_b) {
   const bool scales = theta_b.size() == 1 && theta_b[0] != 0 && std::isfinite(theta_b[0]);
   b_scale_ = scales ? std::abs(theta_b[0]) : 1;
   const Vector theta = theta_b / b_scale_;
-  if (theta == theta_b_) return;
+  if (theta.size() == theta_b_.size() && theta == theta_b_) return;
   b_ = (model_.contact.b.reduced * theta).reshaped(model_.contact.generators, model_.primal_size());
   theta_b_ = theta;
   turned_b_ = body_.turned(b_.transpose());

@@ -64,76 +64,6 @@ Side side_of(const Reader &reader, const std::string &boundary, const Scene &sce
   return side;
 }
 
-std::string normal_choice(const CaseNode &node) {
-  return choice_or(node, "normal", "auto", {"auto", "body", "rigid", "deformed"});
-}
-
-/// Where the body is at rest, as `gap_from` says.
-std::function<PointMap> measured_from(const CaseNode &node, const Side &side, const Scene &scene) {
-  const bool edges =
-      choice_or(node, "gap_from", "curve", {"curve", "edges"}) == "edges" || !side.at;
-  return edges ? scene.map : side.at;
-}
-
-/// Where the body now is.
-RigidContact following(const CaseNode &node, const Side &side,
-                       const std::function<Surface> &surface, const Friction &friction) {
-  if (choice_or(node, "gap", "closest", {"closest", "ray", "vertical"}) != "closest")
-    throw bad_input("kinematics: large measures the gap to the next point: leave out gap");
-  const std::string normal = normal_choice(node);
-  if (normal == "body")
-    throw bad_input("normal: body is that of the undeformed body: with kinematics: large use rigid "
-                    "or deformed");
-  RigidSurface contact{side.boundary, surface};
-  if (choice_or(node, "gap_from", "curve", {"curve", "edges"}) == "curve")
-    contact.at_rest = side.at;
-  if (normal == "deformed") {
-    if (!side.normal)
-      throw bad_input("normal: deformed needs a boundary on a circle ('curves:') and a map "
-                      "that does not turn or stretch it");
-    contact.body_normal = side.normal;
-  }
-  contact.friction = friction;
-  contact.lumped = yes_or(node, "lumped", false);
-  return rigid_contact(contact);
-}
-
-/// The published law takes the normal of a round body on a disk; any other that of what is rigid.
-RigidContact at_rest(const CaseNode &node, const Side &side, const std::function<Surface> &surface,
-                     const Friction &friction, const Scene &scene) {
-  const std::string choice = normal_choice(node);
-  if (choice == "deformed")
-    throw bad_input("normal: deformed is that of the deformed body: use it with kinematics: large");
-  if (choice == "body" && !side.normal)
-    throw bad_input("normal: body needs a boundary on a circle ('curves:') and a map that does "
-                    "not turn or stretch it");
-  const bool published = choice == "auto" && entry(node, "against").find("disk") != nullptr;
-  const std::function<PointMap> normal =
-      side.normal && (choice == "body" || published)
-          ? side.normal
-          : normal_of_surface(surface, side.at ? side.at : scene.map);
-  const std::string gap = choice_or(node, "gap", "closest", {"closest", "ray", "vertical"});
-  const GapKind kind = gap == "ray"        ? GapKind::ray
-                       : gap == "vertical" ? GapKind::vertical
-                                           : GapKind::closest;
-  Support support{side.boundary, normal,
-                  gap_to_surface(surface, measured_from(node, side, scene), normal, kind), friction,
-                  yes_or(node, "lumped", false)};
-  support.body_normal = side.normal;
-  return rigid_contact(support);
-}
-
-RigidContact surface_contact(Reader &reader, const CaseNode &node,
-                             const std::function<Surface> &surface, const Side &side,
-                             Scene &scene) {
-  check_used(node, "with a disk or a level set",
-             {"at", "against", "normal", "gap", "gap_from", "friction", "kinematics", "formulation",
-              "nitsche_gamma0", "lumped"});
-  const Friction friction = friction_in(reader, node, scene);
-  return is_large(node) ? following(node, side, surface, friction)
-                        : at_rest(node, side, surface, friction, scene);
-}
-
 std::function<Surface> disk_in(Reader &reader, const CaseNode &disk) {
   const std::vector<Expression> centre = components_in(reader, entry(disk, "center"));
   if (centre.size() != 2) throw bad_input("the center of a disk is [x, y]");
@@ -142,49 +72,70 @@ std::function<Surface> disk_in(Reader &reader, const CaseNode &disk) {
                       coefficient_of(formula_of(reader, {centre[1]})), coefficient_of(radius));
 }
 
-RigidContact plane_contact(Reader &reader, const CaseNode &node, const CaseNode &table,
-                           const Side &side, Scene &scene) {
-  check_used(
-      node, "with a plane",
-      {"at", "against", "friction", "kinematics", "formulation", "nitsche_gamma0", "lumped"});
-  if (is_large(node)) throw bad_input("kinematics: large is not for a plane yet: use small");
-  const std::vector<double> normal = numbers_in(reader, entry(table, "normal"), 2);
-  HalfPlane plane{side.boundary,
-                  {normal[0], normal[1], 0},
-                  {},
-                  coefficient_of(formula_in(reader, entry(table, "position")))};
-  if (const CaseNode *pivot = table.find("pivot")) {
-    const std::vector<double> x = numbers_in(reader, *pivot, 2);
-    plane.pivot = {x[0], x[1], 0};
-  }
-  if (const CaseNode *tilt = table.find("tilt"))
-    plane.tilt = coefficient_of(formula_in(reader, *tilt));
-  plane.surface = side.at;
-  plane.body_normal = side.normal;
-  plane.friction = friction_in(reader, node, scene);
-  plane.lumped = yes_or(node, "lumped", false);
-  return rigid_contact(plane);
+std::function<Surface> plane_in(Reader &reader, const CaseNode &plane) {
+  const auto vector_in = [&](const CaseNode &node) -> Point {
+    const std::vector<double> x = numbers_in(reader, node, 2);
+    return {x[0], x[1], 0};
+  };
+  const CaseNode *pivot = plane.find("pivot"), *tilt = plane.find("tilt");
+  return plane_surface(vector_in(entry(plane, "normal")), pivot ? vector_in(*pivot) : Point{},
+                       coefficient_of(formula_in(reader, entry(plane, "position"))),
+                       tilt ? coefficient_of(formula_in(reader, *tilt))
+                            : std::function<Coefficient>());
 }
 
-ContactRecipe with_something_rigid(Reader &reader, const CaseNode &node, const CaseNode &against,
-                                   Scene &scene) {
+std::function<Surface> surface_in(Reader &reader, const CaseNode &against) {
   const CaseNode *disk = against.find("disk"), *plane = against.find("plane"),
                  *level = against.find("level_set");
   if ((disk != nullptr) + (plane != nullptr) + (level != nullptr) != 1)
     throw bad_input(
         "against: a boundary, {disk: {...}}, {plane: {...}} or {level_set: EXPRESSION}");
+  return disk    ? disk_in(reader, *disk)
+         : plane ? plane_in(reader, *plane)
+                 : level_set(value_and_gradient_of(formula_in(reader, *level)));
+}
+
+/// Whether contact is along the normal of the body. The published law takes that of a round body on
+/// a disk; any other that of what is rigid.
+bool is_along_body(const CaseNode &node, bool large, bool is_round) {
+  const std::string normal =
+      choice_or(node, "normal", "auto", {"auto", "body", "rigid", "deformed"});
+  if (large && normal == "body")
+    throw bad_input("normal: body is that of the undeformed body: with kinematics: large use rigid "
+                    "or deformed");
+  if (!large && normal == "deformed")
+    throw bad_input("normal: deformed is that of the deformed body: use it with kinematics: large");
+  if (normal == "auto") return !large && is_round && entry(node, "against").find("disk") != nullptr;
+  return normal != "rigid";
+}
+
+RigidContact rigid_in(Reader &reader, const CaseNode &node, const CaseNode &against, Scene &scene) {
+  check_used(node, "with something rigid",
+             {"at", "against", "normal", "gap", "gap_from", "friction", "kinematics", "formulation",
+              "nitsche_gamma0", "lumped"});
+  const Side side = side_of(reader, entry(node, "at").value, scene);
+  const bool of_curve = choice_or(node, "gap_from", "curve", {"curve", "edges"}) == "curve";
+  const std::string gap = choice_or(node, "gap", "closest", {"closest", "ray", "vertical"});
+  RigidSurface surface{side.boundary, surface_in(reader, against)};
+  if (of_curve) surface.at_rest = side.at;
+  surface.body_normal = side.normal;
+  surface.large = is_large(node);
+  surface.along_body = is_along_body(node, surface.large, bool(side.normal));
+  surface.partner = gap == "ray"        ? Partner::ray
+                    : gap == "vertical" ? Partner::vertical
+                                        : Partner::closest;
+  surface.friction = friction_in(reader, node, scene);
+  surface.lumped = yes_or(node, "lumped", false);
+  RigidContact rigid = rigid_contact(surface);
+  rigid.curved = !side.at && of_curve;
+  return rigid;
+}
+
+ContactRecipe with_something_rigid(Reader &reader, const CaseNode &node, const CaseNode &against,
+                                   Scene &scene) {
   if (scene.axisymmetric && yes_or(node, "lumped", false))
     throw bad_input("vertex quadrature sees nothing on the axis: leave out lumped");
-  const Side side = side_of(reader, entry(node, "at").value, scene);
-  RigidContact rigid =
-      plane != nullptr
-          ? plane_contact(reader, node, *plane, side, scene)
-          : surface_contact(reader, node,
-                            disk != nullptr
-                                ? disk_in(reader, *disk)
-                                : level_set(value_and_gradient_of(formula_in(reader, *level))),
-                            side, scene);
-  rigid.curved = !side.at && choice_or(node, "gap_from", "curve", {"curve", "edges"}) == "curve";
+  const RigidContact rigid = rigid_in(reader, node, against, scene);
   if (choice_or(node, "formulation", "mixed", {"mixed", "nitsche"}) == "mixed")
     return by_multipliers(rigid);
   if (std::ranges::any_of(scene.materials,

@@ -29,7 +29,7 @@ Grid line(const Vector &pressure, const Vector &gap, const Vector &shear = {},
 double measure(const std::vector<ContactLine> &lines, std::size_t field) {
   double sum = 0;
   for (const ContactLine &one : lines) {
-    const auto &[first, last] = one.fields;
+    const auto &[first, last, middle] = one.fields;
     EXPECT_EQ(first[field], last[field]);
     sum += (last[field::x] - first[field::x]) * first[field];
   }
@@ -92,7 +92,7 @@ TEST(ContactLines, CutWhereSignsChange) {
   EXPECT_EQ(lines.size(), 5U);
   double tangential = 0, way = 0;
   for (const auto &[fields, seen] : lines) {
-    const auto &[a, b] = fields;
+    const auto &[a, b, middle] = fields;
     const double length = b[field::x] - a[field::x];
     tangential += length * std::abs(a[field::tangential] + b[field::tangential]) / 2;
     way += length * std::abs(a[field::slip] + b[field::slip]) / 2;

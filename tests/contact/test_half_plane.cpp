@@ -26,8 +26,13 @@ Scene scene_of(int degree) {
   return scene;
 }
 
-HalfPlane tilted_plane(FrictionLaw law = FrictionLaw::none) {
-  HalfPlane plane{"foot", {0.6, -0.8, 0}, {0.3, -0.2, 0}, affine(0.7, -1, push), parameter(tilt)};
+const Point untilted{0.6, -0.8, 0}, pivot{0.3, -0.2, 0};
+std::function<Coefficient> position() {
+  return affine(0.7, -1, push);
+}
+
+RigidSurface tilted_plane(FrictionLaw law = FrictionLaw::none) {
+  RigidSurface plane{"foot", plane_surface(untilted, pivot, position(), parameter(tilt))};
   if (law != FrictionLaw::none) plane.friction = {law, parameter(friction)};
   return plane;
 }
@@ -48,12 +53,12 @@ Point twice(const Point &x) {
   return {2 * x[0], 2 * x[1], 0};
 }
 
-std::unique_ptr<ContactInterface> made_on(const HalfPlane &plane, const Scene &scene,
+std::unique_ptr<ContactInterface> made_on(const RigidSurface &plane, const Scene &scene,
                                           const InterfaceMesh &curve) {
-  return half_plane(plane).make(scene, curve);
+  return rigid_surface(plane).make(scene, curve);
 }
 
-ContactOperators operators_of(const HalfPlane &plane, const Scene &scene,
+ContactOperators operators_of(const RigidSurface &plane, const Scene &scene,
                               const InterfaceMesh &curve, const FullMu &at = mu) {
   ContactOperators operators;
   made_on(plane, scene, curve)->assemble_all(at, {}, operators);
@@ -76,7 +81,7 @@ Vector below(const Vector &upper, const Vector &lower) {
 }
 
 /// The normal is the same on all edges, whatever their direction; the gap is linear on each.
-TEST(HalfPlane, OperatorsAreIntegralsInClosedForm) {
+TEST(RigidPlane, OperatorsAreIntegralsInClosedForm) {
   Random random(4);
   const Curve vertices = random_curve(random, 7, -0.4, 1.1, -0.5);
   const Point n = normal_at(mu), tau = turned(n);
@@ -105,13 +110,13 @@ TEST(HalfPlane, OperatorsAreIntegralsInClosedForm) {
     }
 }
 
-TEST(HalfPlane, TheConditionAtNodesIsItsOwn) {
+TEST(RigidPlane, TheConditionAtNodesIsItsOwn) {
   Random random(5);
   const Curve vertices = random_curve(random, 6, -0.4, 1.1, -0.5);
   for (const int degree : {1, 2}) {
     const InterfaceMesh curve = support_curve(vertices, degree);
     const Scene scene = scene_of(degree);
-    HalfPlane plane = tilted_plane();
+    RigidSurface plane = tilted_plane();
     for (const bool lumped : {false, true}) {
       plane.lumped = lumped;
       const auto interface = made_on(plane, scene, curve);
@@ -137,7 +142,7 @@ TEST(HalfPlane, TheConditionAtNodesIsItsOwn) {
 
 /// Pushed in along the normal it is nearer everywhere by as much; of no tilt and of the normal
 /// turned beforehand it is the same plane.
-TEST(HalfPlane, MovesAlongItsNormalAndTurnsAboutThePointBesideItsPivot) {
+TEST(RigidPlane, MovesAlongItsNormalAndTurnsAboutThePointBesideItsPivot) {
   Random random(6);
   const InterfaceMesh curve = support_curve(random_curve(random, 5, -0.4, 1.1, -0.5), 2);
   const Scene scene = scene_of(2);
@@ -146,21 +151,20 @@ TEST(HalfPlane, MovesAlongItsNormalAndTurnsAboutThePointBesideItsPivot) {
                                                {mu[push] + 0.2, mu[tilt], mu[friction]});
   EXPECT_LT((of.g - pushed.g - 0.2 * below(of.weights, Vector::Zero(6))).norm(), 1e-14);
   EXPECT_EQ(Matrix(of.b), Matrix(pushed.b));
-  HalfPlane turned_before = tilted_plane(FrictionLaw::coulomb);
-  turned_before.normal = normal_at(mu);
-  turned_before.tilt = {};
+  RigidSurface turned_before = tilted_plane(FrictionLaw::coulomb);
+  turned_before.surface = plane_surface(normal_at(mu), pivot, position());
   const ContactOperators same = operators_of(turned_before, scene, curve);
   EXPECT_LT((Matrix(same.b) - Matrix(of.b)).norm(), 1e-14);
   EXPECT_LT((same.g - of.g).norm(), 1e-14);
 }
 
 /// Where the body's surface is given, its points count instead of those of the edges.
-TEST(HalfPlane, MeasuresTheGapFromTheSurfaceOfTheBody) {
+TEST(RigidPlane, MeasuresTheGapFromTheSurfaceOfTheBody) {
   const Curve vertices = arc(6, 0.5);
   const InterfaceMesh curve = support_curve(vertices, 1);
   const Scene scene = scene_of(1);
-  HalfPlane plane = tilted_plane();
-  plane.surface = [](const FullMu &, const Point &x) {
+  RigidSurface plane = tilted_plane();
+  plane.at_rest = [](const FullMu &, const Point &x) {
     const double r = std::hypot(x[0], x[1]) / 2;
     return Point{x[0] / r, x[1] / r, 0};
   };
@@ -171,7 +175,29 @@ TEST(HalfPlane, MeasuresTheGapFromTheSurfaceOfTheBody) {
               gap_at(mu, {2 * x[0] / r, 2 * x[1] / r, 0}), 1e-14);
 }
 
-TEST(HalfPlane, TheBoundOfFrictionIsThatOfItsParameter) {
+/// d / (n . t) along a line t, of which contact along the normal of the body sees a part.
+TEST(RigidPlane, PartnersAreWhereTheLineMeetsThePlane) {
+  const InterfaceMesh curve = support_curve(arc(6, 0.5), 1);
+  const Scene scene = scene_of(1);
+  RigidSurface plane = tilted_plane();
+  plane.body_normal = radial;
+  for (const bool along_body : {false, true})
+    for (const Partner partner : {Partner::closest, Partner::ray, Partner::vertical}) {
+      plane.along_body = along_body;
+      plane.partner = partner;
+      const auto interface = made_on(plane, scene, curve);
+      for (const Point &x : curve.points) {
+        const Point of_plane = normal_at(mu), n = along_body ? radial(mu, x) : of_plane,
+                    line = partner == Partner::closest ? of_plane
+                           : partner == Partner::ray   ? n
+                                                       : Point{0, -1, 0};
+        const double way = gap_at(mu, twice(x)) / dot(of_plane, line);
+        EXPECT_NEAR(interface->constraint_at(mu, x, twice(x), {}).gap, way * dot(line, n), 1e-13);
+      }
+    }
+}
+
+TEST(RigidPlane, TheBoundOfFrictionIsThatOfItsParameter) {
   const InterfaceMesh curve = support_curve(arc(4, 0.5), 1);
   const Scene scene = scene_of(1);
   const auto bound = [&](FrictionLaw law) {
@@ -184,23 +210,21 @@ TEST(HalfPlane, TheBoundOfFrictionIsThatOfItsParameter) {
   EXPECT_EQ(made_on(tilted_plane(FrictionLaw::coulomb), scene, curve)->dual().components, 2);
 }
 
-TEST(HalfPlane, RefusesANormalThatIsNotOne) {
+TEST(RigidPlane, RefusesANormalThatIsNotOne) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  HalfPlane plane = tilted_plane();
-  for (const Point &normal : {Point{0, -2, 0}, Point{}, Point{nan, 1, 0}, Point{0, 0.6, 0.8}}) {
-    plane.normal = normal;
-    EXPECT_TRUE(refuses("the normal of the half-plane on 'foot' is (", [&] { half_plane(plane); }));
-  }
+  for (const Point &normal : {Point{0, -2, 0}, Point{}, Point{nan, 1, 0}, Point{0, 0.6, 0.8}})
+    EXPECT_TRUE(refuses("the normal of a rigid plane is (",
+                        [&] { plane_surface(normal, pivot, position()); }));
 }
 
 /// By the name of the function and of the boundary, wherever parameters are checked.
-TEST(HalfPlane, RefusesFunctionsThatAreNotFinite) {
+TEST(RigidPlane, RefusesFunctionsThatAreNotFinite) {
   const std::function<Coefficient> broken = [](const FullMu &at) {
     return at[push] > 0.5 ? std::numeric_limits<double>::quiet_NaN() : 0.1;
   };
-  const auto expect = [&](const HalfPlane &plane, const std::string &name) {
+  const auto expect = [&](const RigidSurface &plane, const std::string &name) {
     Scene scene = scene_of(1);
-    scene.contacts = {half_plane(plane)};
+    scene.contacts = {rigid_surface(plane)};
     const std::string says =
         "the " + name + " of contact on 'foot' is not finite at push=0.6 tilt=0 friction=0.3";
     EXPECT_NO_THROW(check_set(scene, {{0.5, 0, 0.3}}));
@@ -210,12 +234,15 @@ TEST(HalfPlane, RefusesFunctionsThatAreNotFinite) {
     EXPECT_TRUE(refuses(says, [&] { check_query(scene, {0.6, 0, 0.3}, true); }));
     EXPECT_TRUE(refuses("the " + name + " of contact on 'foot'", [&] { check_box(scene); }));
   };
-  HalfPlane plane = tilted_plane();
-  plane.position = broken;
-  expect(plane, "position of the half-plane");
-  plane = tilted_plane();
-  plane.tilt = broken;
-  expect(plane, "tilt of the half-plane");
+  const InterfaceMesh curve = support_curve(arc(4, 0.5), 1);
+  RigidSurface plane = tilted_plane();
+  for (const std::function<Surface> &nowhere :
+       {plane_surface(untilted, pivot, broken),
+        plane_surface(untilted, pivot, position(), broken)}) {
+    plane.surface = nowhere;
+    EXPECT_NO_THROW(operators_of(plane, scene_of(1), curve, {0.5, 0, 0.3}));
+    EXPECT_THROW(operators_of(plane, scene_of(1), curve, {0.6, 0, 0.3}), Error);
+  }
   plane = tilted_plane();
   plane.friction = {FrictionLaw::coulomb, broken};
   expect(plane, "coefficient of friction");

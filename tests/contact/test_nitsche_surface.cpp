@@ -38,7 +38,8 @@ struct OnOneCell {
 };
 
 Facing faced(Surface *surface) {
-  return rigid_contact(RigidSurface{"support", surface}).facing;
+  return rigid_contact(RigidSurface{.boundary = "support", .surface = surface, .large = true})
+      .facing;
 }
 
 /// Edge 0 of the cell.
@@ -157,10 +158,11 @@ TEST(NitscheSurface, TheTangentHasWhatTheAxesTurnBy) {
 }
 
 TEST(NitscheSurface, OnlyItsOwnNormalIsTaken) {
-  RigidSurface surface{"support", disk_at};
+  RigidSurface surface{.boundary = "support", .surface = disk_at, .large = true};
   surface.body_normal = [](const FullMu &, const Point &) { return Point{0, -1, 0}; };
+  surface.along_body = true;
   EXPECT_THROW(by_nitsche(rigid_contact(surface), 10), Error);
-  surface = {"support", disk_at};
+  surface.along_body = false;
   surface.lumped = true;
   EXPECT_THROW(by_nitsche(rigid_contact(surface), 10), Error);
 }

@@ -30,7 +30,7 @@ SurfacePoint plane_below(const FullMu &, const Point &y) {
 
 struct Surfaces {
   Scene scene;
-  RigidSurface surface{"support", disk_below};
+  RigidSurface surface{.boundary = "support", .surface = disk_below, .large = true};
   InterfaceMesh curve;
   std::unique_ptr<ContactInterface> interface;
 
@@ -192,6 +192,7 @@ TEST(RigidSurface, TheNormalOfTheBodyTurnsWithIt) {
   for (const int degree : {1, 2}) {
     Surfaces of(degree);
     of.surface.body_normal = radial;
+    of.surface.along_body = true;
     of.surface.lumped = true; // normals of single vertices
     of.make();
     EXPECT_FALSE(of.interface->has_curvature());

@@ -1,7 +1,7 @@
 // Values at the multipliers of one mesh, interpolated at those of another.
-#include "tests/catalogue.hpp"
 #include "rbvi/contact/transfer.hpp"
 #include "rbvi/core/error.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -105,7 +105,7 @@ TEST(CheckScene, TheNormalOfASurfaceIsTheGradientOfItsDistance) {
       const std::function<Surface> surface = [=](const FullMu &, const Point &x) {
         return SurfacePoint{slope * x[1], {0, y, 0}, 0};
       };
-      s.contacts = {rigid_surface({"contact", surface})};
+      s.contacts = {rigid_surface({.boundary = "contact", .surface = surface, .large = true})};
     };
   };
   EXPECT_TRUE(refused(block(), "no gradient of the distance", ground(1, -1)));

@@ -55,9 +55,9 @@ Scene turned_block(int degree, FrictionLaw law, const std::function<Coefficient>
   scene.a = {mapped_term(elasticity("", lame(young, poisson), degree))};
   scene.v_product = {exact_term(h1_product(1, 2, degree))};
   scene.fixed = {{"sides", {}, {{exact}}}, {"top", {}, {{exact}}}};
-  HalfPlane plane{"contact", {0, -1, 0}, {0, 0, 0}, constant(pushed), parameter(angle)};
+  RigidSurface plane{"contact", plane_surface({0, -1, 0}, {}, constant(pushed), parameter(angle))};
   if (law != FrictionLaw::none) plane.friction = {law, parameter(friction), false, limit};
-  scene.contacts = {half_plane(plane)};
+  scene.contacts = {rigid_surface(plane)};
   return scene;
 }
 

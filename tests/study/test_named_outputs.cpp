@@ -99,6 +99,58 @@ TEST(NamedOutputs, OfAModelComeBackFromItsFile) {
     expect_exact(mu, online.outputs(mu, online.solve(mu)));
 }
 
+/// Both are sums by Gauss points of the same functions.
+void expect_alike(const std::string &physics, const std::string &outputs,
+                  const std::vector<std::array<std::string, 2>> &pairs, double near = 1e-12) {
+  const Scene scene = make_scene(read_case("rbvi: 1\nphysics: " + physics + outputs, "own.yaml"));
+  Problem problem(PETSC_COMM_WORLD, scene, {});
+  std::map<std::string, double> found = values_of(HighFidelity(problem, {}).solve({0.05}).outputs);
+  for (const auto &[one, other] : pairs) {
+    EXPECT_NE(found.at(one), 0);
+    EXPECT_NEAR(found.at(one), found.at(other), near * std::abs(found.at(other))) << one << outputs;
+  }
+}
+
+/// Eight edges of a round body on a plane, of which gap and slip are parts of the displacement.
+TEST(NamedOutputs, OverContactAreThoseOverItsBoundary) {
+  for (const std::string keys :
+       {"gap_from: edges", "gap_from: edges, kinematics: large", "gap_from: edges, lumped: yes",
+        "gap_from: edges, formulation: nitsche"})
+    for (const std::string degree : {"1", "2"})
+      expect_alike(
+          "plane_strain\n",
+          "mesh: {built_in: half_disc, angle: 45, edges: 8, degree: " + degree +
+              "}\nparameters: {push: {range: [0, 0.1], default: 0.05}}\n"
+              "materials: {rubber: {at: all, E: 15, nu: 0.3}}\n"
+              "imposed: {top: {at: top, ux: 0.2*push, uy: -push}}\n"
+              "contact: {foot: {at: contact, friction: {coulomb: 0.3}, against: {plane: "
+              "{normal: [0, -1], position: 1.001}}, " +
+              keys +
+              "}}\noutputs:\n"
+              "  down:  {integral: uy * x + ux^2, at: foot}\n"
+              "  down_of_boundary:  {integral: uy * x + ux^2, at: contact}\n"
+              "  gap:  {integral: gap, at: foot}\n"
+              "  gap_of_boundary:  {integral: 1.001 + y + uy, at: contact}\n"
+              "  slip:  {mean: slip, at: foot, where: gap < 0.05}\n"
+              "  slip_of_boundary:  {mean: ux, at: contact, where: 1.001 + y + uy < 0.05}\n",
+          {{"down", "down_of_boundary"}, {"gap", "gap_of_boundary"}, {"slip", "slip_of_boundary"}},
+          1e-9);
+}
+
+/// Two blocks whose meshes do not match: kinks of one inside edges of the other are fitted.
+TEST(NamedOutputs, OverTwoBodiesAreThoseOverTheirBoundaries) {
+  const std::string text =
+      "mesh: {built_in: two_blocks, degree: 2}\n"
+      "parameters: {push: {range: [0, 0.1], default: 0.05}}\n"
+      "map: [x, 'y > 0 ? y - 0.25 : y + 0.25']\n"
+      "materials: {rubber: {at: all, E: 15, nu: 0.3}}\n"
+      "imposed:\n  top: {at: top, ux: 0, uy: -push * (1 + x^2)}\n  bottom: {at: bottom, ux: 0, uy: "
+      "0}\n"
+      "contact: {between: {at: slave, against: master}}\noutputs:\n"
+      "  down: {integral: uy * x, at: between}\n  down_of_slave: {integral: uy * x, at: slave}\n";
+  expect_alike("plane_strain\n", text, {{"down", "down_of_slave"}});
+}
+
 /// A measure that did not end inside an edge would jump.
 TEST(NamedOutputs, AMeasureIsContinuous) {
   Problem problem(PETSC_COMM_WORLD, block("  left: {measure: pressure * x < level}\n"), {});

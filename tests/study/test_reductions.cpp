@@ -246,10 +246,10 @@ Scene block_between_walls(bool friction) {
   scene.fixed = {{"sides", {}}};
   scene.f = {
       exact_term(pressure_load("top", 1, 2, scene.degree), {{"load", affine(1, 5, 0), {0}}})};
-  HalfPlane plate{"contact", {0, -1, 0}, {0.5, 0, 0}, constant(0)};
-  plate.tilt = affine(0, 0.05, 1);
+  RigidSurface plate{"contact",
+                     plane_surface({0, -1, 0}, {0.5, 0, 0}, constant(0), affine(0, 0.05, 1))};
   if (friction) plate.friction = {FrictionLaw::coulomb, constant(0.3)};
-  scene.contacts = {half_plane(plate)};
+  scene.contacts = {rigid_surface(plate)};
   return scene;
 }
 

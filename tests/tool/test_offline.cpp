@@ -41,7 +41,7 @@ Scene pushed_block() {
   scene.fixed = {{"top", {}, {{[](const FullMu &mu, const Point &) {
                     return Point{mu[1], -mu[0], 0};
                   }}}}};
-  scene.contacts = {half_plane({"contact", {0, -1, 0}, {0, 0, 0}, constant(0)})};
+  scene.contacts = {rigid_surface({"contact", plane_surface({0, -1, 0}, {}, constant(0))})};
   return scene;
 }
 
@@ -138,12 +138,10 @@ TEST_F(Offline, CountsQueriesAtWhichACoefficientIsNotFinite) {
   expect_unanswered("the coefficient stiffness is not finite at down=0.03");
 }
 
-TEST_F(Offline, CountsQueriesAtWhichAHalfPlaneIsNowhere) {
-  HalfPlane plane{"contact", {0, -1, 0}, {0, 0, 0}, {}};
-  plane.position = [](const FullMu &mu) { return between_samples(mu, nan, 0); };
-  options.scene.contacts = {half_plane(plane)};
-  expect_unanswered(
-      "the position of the half-plane of contact on 'contact' is not finite at down=0.03");
+TEST_F(Offline, CountsQueriesAtWhichAPlaneIsNowhere) {
+  const std::function<Coefficient> nowhere = [](const FullMu &mu) { return between_samples(mu, nan, 0); };
+  options.scene.contacts = {rigid_surface({"contact", plane_surface({0, -1, 0}, {}, nowhere)})};
+  expect_unanswered("the position or the tilt of a rigid plane is not finite");
 }
 
 TEST_F(Offline, RefusesTrainingParametersAtWhichSomethingIsNotFinite) {
@@ -153,9 +151,9 @@ TEST_F(Offline, RefusesTrainingParametersAtWhichSomethingIsNotFinite) {
   options.scene.a.front().theta = {{"stiffness", broken, {0}}};
   expect_refused("the coefficient stiffness" + where);
   options.scene = pushed_block();
-  HalfPlane plane{"contact", {0, -1, 0}, {0, 0, 0}, constant(0)};
+  RigidSurface plane{"contact", plane_surface({0, -1, 0}, {}, constant(0))};
   plane.friction = {FrictionLaw::coulomb, broken};
-  options.scene.contacts = {half_plane(plane)};
+  options.scene.contacts = {rigid_surface(plane)};
   expect_refused("the coefficient of friction of contact on 'contact'" + where);
   options.scene = pushed_block();
   options.scene.fixed.front().values = {{[broken](const FullMu &mu, const Point &) {

@@ -130,10 +130,16 @@ struct SlaveLines {
   std::vector<CurvePlace> places;
   std::vector<const PairPoint *> partners; ///< of the places; null: the end of lines without any
   std::vector<int> cells;                  ///< two places each
+  std::vector<FacedEdge> parts;            ///< that the cells are
   std::vector<bool> faced;                 ///< of the cells
 };
 /// `whole`: the lines that face nothing, too. `partners` must outlive them.
 SlaveLines slave_lines(const Partners &partners, bool whole);
+std::vector<CurvePlace> middles_of(const SlaveLines &lines);
+/// A field at the middles of lines: of the parabolas between its values at the places those that
+/// fit its values at the points of quadrature best.
+Vector fitted_middles(const Partners &partners, const SlaveLines &lines, const Vector &at_places,
+                      const std::function<double(const PairPoint &)> &value);
 
 /// B^T lambda at all nodes of the slave, then of the master, node * 2 + component. `lambda`: with
 /// friction those of both laws.

@@ -138,10 +138,15 @@ struct CurvePlace {
   }
 };
 
+/// The node in the middle of an edge of one boundary; of degree 1 an end.
+int middle_node(const InterfaceMesh &mesh, Index e);
+
 /// Lines between places of the first boundary of an interface, mapped, with the field "u" (motion +
-/// u), linear on an edge. `cells`: two places each; `u`: at the nodes of the mesh.
+/// u). `cells`: two places each; `u`: at the nodes of the mesh. `middles`: the middles of the
+/// cells, whose u is then the field "u_middle" of cells.
 Grid polyline(const Scene &scene, const FullMu &mu, const InterfaceMesh &mesh,
-              const std::vector<CurvePlace> &places, std::vector<int> cells, const Vector &u);
+              const std::vector<CurvePlace> &places, std::vector<int> cells, const Vector &u,
+              const std::vector<CurvePlace> &middles = {});
 
 /// Adds a stress to a polyline: one value for each node, or for each edge, then also at the nodes,
 /// as the mean of the edges beside them weighted by length.

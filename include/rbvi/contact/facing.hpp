@@ -1,5 +1,5 @@
-// What the points of a boundary face: a rigid support where the body is at rest, or a rigid surface
-// where it now is (large deformations). Contact by multipliers (contact/support.hpp) and by
+// What the points of a boundary face: a rigid surface from where the body is at rest, or from where
+// it now is (large deformations). Contact by multipliers (contact/support.hpp) and by
 // Nitsche's method (contact/nitsche.hpp) ask nothing else of what is faced.
 // Niakh (2022): (3.4), (3.5).
 #pragma once
@@ -15,7 +15,7 @@ namespace rbvi {
 struct PlacedPoint {
   Point x;
   Point motion; ///< of the scene
-  Point y{};    ///< where the body is at rest, with the motion: if the facing asks for it
+  Point y;      ///< where the body is at rest, without the motion
 };
 
 /// normal . w <= gap for the displacement w of a point, and the slip tau . (motion + w),
@@ -34,14 +34,13 @@ struct Facing {
   /// `displacement`: the state there, which the condition is linearised about; at rest ignored.
   std::function<FacedPoint(const FullMu &mu, const PlacedPoint &point, const Point &displacement)>
       at;
-  /// The point that one of the reference boundary faces at rest, for pictures; empty: it lies along
-  /// the normal.
-  std::function<PointMap> partner{};
-  /// How far the displaced point is from what it really faces, at rest; empty: as far as `at` says.
-  std::function<double(const FullMu &mu, const Point &x, const Point &displacement)> distance{};
-  /// The normal alone, for less work, where it does not depend on where the body is.
+  /// The point that is faced at rest, for pictures; empty: it lies along the normal.
+  std::function<Point(const FullMu &mu, const PlacedPoint &point)> partner{};
+  /// How far from what it really faces the point is after `moved`, the motion and the displacement;
+  /// empty: as far as `at` says.
+  std::function<double(const FullMu &mu, const PlacedPoint &point, const Point &moved)> distance{};
+  /// The normal alone, for less work, where it is a function of the place; or empty.
   std::function<PointMap> normal{};
-  bool asks_place = true; ///< whether `at` asks for PlacedPoint::y
   /// Where a point of the reference boundary is at rest; empty: where the map takes it.
   std::function<PointMap> at_rest{};
   bool follows_state = false;
@@ -59,12 +58,8 @@ inline Point curve_point(const Facing &facing, const Point &x) {
 inline PlacedPoint place(const Scene &scene, const Facing &facing, const FullMu &mu,
                          const Point &of_edge) {
   const Point x = curve_point(facing, of_edge);
-  PlacedPoint point{x, scene.motion ? scene.motion(mu, x) : Point{}};
-  if (!facing.asks_place) return point;
-  point.y = facing.at_rest ? facing.at_rest(mu, x) : scene.map(mu, x);
-  for (std::size_t c = 0; c < 2; ++c)
-    point.y[c] += point.motion[c];
-  return point;
+  return {x, scene.motion ? scene.motion(mu, x) : Point{},
+          facing.at_rest ? facing.at_rest(mu, x) : scene.map(mu, x)};
 }
 
 /// motion . tau.
@@ -77,8 +72,7 @@ struct RigidContact {
   std::string boundary;
   Facing facing;
   Friction friction;
-  bool lumped;                                    ///< vertex quadrature
-  std::vector<ContactCoefficient> coefficients{}; ///< beside that of friction
+  bool lumped; ///< vertex quadrature
   /// Edges that are in a boundary of Scene::curves stand for its arcs (of degree 2).
   bool curved = false;
 };

@@ -205,7 +205,9 @@ public:
   }
   /// The mapped interface with its pressure, gap, normal (out of the body; of a membrane in space,
   /// downwards), to_partner, ... `u`: at its nodes, node * components + c, without the motion.
-  /// `whole`: also where nothing is faced, without a pressure; gap and slip are NaN there.
+  /// `whole`: what integrals are taken of: also where nothing is faced, without a pressure (gap and
+  /// slip are NaN there), and of curves u, gap and slip at the middles of lines as fields of cells,
+  /// "u_middle" to "slip_middle".
   virtual Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda, bool whole) = 0;
 
   /// Separable interfaces: this one, as the sum over its entities. Null: the others.

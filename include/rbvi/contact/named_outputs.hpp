@@ -1,7 +1,8 @@
 // Outputs that a scene has under names of its own (Scene::outputs), of full and of reduced answers
 // alike. On a contact interface they are of its whole boundary, with straight pieces between its
-// vertices on which pressure, gap, tangential stress, slip and displacement are linear
-// (contact_lines); elsewhere of cells of the mesh with their functions (element/output_cells.hpp).
+// vertices on which pressure and tangential stress are linear, and displacement, gap and slip of
+// degree 2 (contact_lines); elsewhere of cells of the mesh with their functions
+// (element/output_cells.hpp).
 // Axisymmetric: of the whole circumference.
 #pragma once
 
@@ -44,13 +45,14 @@ void add_gap_error(const Scene &scene, const Contact &contact, const FullMu &mu,
 
 /// The boundary of a contact interface as straight lines for integrals over it. They are cut where
 /// contact and stick end, and where the tangential stress and the slip change their sign, so that
-/// their magnitudes are linear, too. Fields at both ends of a line, between which they are linear.
+/// their magnitudes are as smooth. Fields at both ends of a line and at its middle, between which
+/// they are of degree 2.
 struct ContactLine {
-  std::array<OutputFields, 2> fields;
+  std::array<OutputFields, 3> fields;
   /// What conditions see: where contact ends inside an edge the pressure falls to zero up to there,
   /// and the gap grows from there on. (The multipliers, whose integrals are forces, fall to zero at
   /// the next vertex.)
-  std::array<OutputFields, 2> seen;
+  std::array<OutputFields, 3> seen;
 };
 
 /// `grid`: ContactInterface::fields; `bound`: of the tangential stress; a node with a pressure of

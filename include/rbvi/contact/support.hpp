@@ -1,5 +1,6 @@
 // Contact of a body with something rigid along a boundary that is a polygonal curve in 2D (Niakh
-// 2022, 3.2): a support, a half-plane that moves, a surface where the body now is.
+// 2022, 3.2): a support, of which normal and gap are functions, or a surface, at rest or where the
+// body now is.
 //
 //   (motion + w) . n <= gap,
 //   and, with friction, the slip (motion + w) . tau,   tau = (-n_y, n_x).
@@ -14,6 +15,7 @@
 
 #include "rbvi/contact/facing.hpp"
 #include "rbvi/contact/interface.hpp"
+#include "rbvi/contact/surfaces.hpp"
 
 namespace rbvi {
 
@@ -31,61 +33,51 @@ struct Support {
   std::function<PointMap> body_normal{};
 };
 
-/// A half-plane whose position and tilt can be parameters. With n its unit normal, out of the body
-/// and the same at all points of the boundary,
+/// A rigid surface. With the signed distance of the surface and its gradient nu, a point at y at
+/// rest, which moves by the motion of the scene and by u, has at rest (small kinematics) the
+/// condition
 ///
-///   u . n <= gap = position - (x - pivot) . n,   x: on the mapped boundary or beside it (surface).
-struct HalfPlane {
-  std::string boundary;
-  Point normal; ///< without tilt, out of the body, of length 1
-  Point pivot;  ///< the plane turns about a point that lies `position` from here along the normal
-  std::function<Coefficient> position;
-  std::function<Coefficient> tilt{}; ///< radians, counterclockwise; empty: none
-  /// The true surface of the body at a point of the reference boundary, mapped; empty: the edges.
-  std::function<PointMap> surface{};
-  Friction friction{};
-  bool lumped = false;                   ///< vertex quadrature
-  std::function<PointMap> body_normal{}; ///< Support::body_normal
-};
-
-/// A surface where the body now is: large deformations (Niakh 2022, appendix A). A point x of the
-/// boundary is at y = x + motion + w. With the signed distance of the surface there and its
-/// gradient nu, linearised about the state s (w = s at y),
+///   n . (motion + u) <= n . (partner(y) - y),   n = -nu(y), or the normal of the body.
 ///
-///   nu . u >= nu . s - distance(y),    and, with friction, the slip (motion + u) . tau,
+/// Where the body now is (large deformations; Niakh 2022, appendix A), linearised about the state
+/// s, n = -nu(y + motion + s),
 ///
-/// n = -nu, tau = (-n_y, n_x). As an inequality of weighted distances it is the first-order part of
+///   n . u <= n . s + distance(y + motion + s),
 ///
-///   int eta distance(x + motion + u) >= 0,
+/// and in both, with friction, the slip (motion + u) . tau, tau = (-n_y, n_x). As an inequality of
+/// weighted distances the second is the first-order part of
+///
+///   int eta distance(y + motion + u) >= 0,
 ///
 /// whose second derivative, -distance'' = -curvature tau tau^T, is the curvature of this interface:
 /// Kacanov's iteration (A.7) is sequential quadratic programming without it. The elasticity of the
 /// body stays linear. Integrals are over the undeformed curve.
 struct RigidSurface {
   std::string boundary;
-  std::function<Surface> surface;
+  std::function<Surface> surface; ///< contact/surfaces.hpp
   /// Where a point of the reference boundary is at rest; empty: where the map takes its edge.
   std::function<PointMap> at_rest{};
-  /// The unit normal at rest, out of the mapped body. Where it is given, the condition is n . u <=
-  /// n . s - distance (n . nu) with n that of the deformed body in place of -nu; it has the same
-  /// limit, no curvature, and may fail from rest.
+  /// The unit normal of the body's exact boundary at rest, at a point of the reference boundary,
+  /// out of the mapped body: by Nitsche's method its stress acts on it; empty: that of the edges.
   std::function<PointMap> body_normal{};
+  /// n is that of the body in place of -nu. Where the body now is, it is that of the deformed body:
+  /// n . u <= n . s - distance (n . nu) has the same limit, no curvature, and may fail from rest.
+  bool along_body = false;
+  Partner partner = Partner::closest;
+  bool large = false; ///< the condition holds where the body now is
   Friction friction{};
   bool lumped = false; ///< vertex quadrature
 };
 
-/// Of a half-plane throws bad_input for a normal whose length is not 1.
+/// Of a surface throws bad_input for what does not go together: `along_body` without the body's
+/// normal, and another partner than the closest point where the body now is.
 RigidContact rigid_contact(const Support &support);
-RigidContact rigid_contact(const HalfPlane &plane);
 RigidContact rigid_contact(const RigidSurface &surface);
 
 /// By multipliers.
 ContactRecipe by_multipliers(const RigidContact &rigid);
 inline ContactRecipe rigid_support(const Support &support) {
   return by_multipliers(rigid_contact(support));
-}
-inline ContactRecipe half_plane(const HalfPlane &plane) {
-  return by_multipliers(rigid_contact(plane));
 }
 inline ContactRecipe rigid_surface(const RigidSurface &surface) {
   return by_multipliers(rigid_contact(surface));
@@ -97,9 +89,9 @@ double gap_error(const ContactInterface &interface, const Scene &scene, const Fa
 
 /// The curve of a support with motion + u, gap, pressure and tangential stress; see
 /// ContactInterface::fields. `duals`: the dual node that each end of each edge of the curve has
-/// there, -1: none.
+/// there, -1: none. `whole`: as in fields.
 Grid support_fields(const ContactInterface &interface, const Scene &scene, const Facing &facing,
                     const std::vector<std::array<Index, 2>> &duals, const FullMu &mu,
-                    const Vector &u, const Vector &lambda);
+                    const Vector &u, const Vector &lambda, bool whole);
 
 } // namespace rbvi

@@ -1,5 +1,5 @@
-// Circles as boundaries of bodies, disks as rigid surfaces, and gaps to them: what supports
-// (contact/support.hpp) of scenes from files are made of.
+// Circles as boundaries of bodies, and what is rigid: planes, disks and level sets are one Surface
+// (core/functions.hpp), which tells a point the way to its closest point of them.
 #pragma once
 
 #include "rbvi/core/functions.hpp"
@@ -23,6 +23,19 @@ std::function<PointMap> normals_of_circles(const std::vector<Circle> &circles);
 std::function<PointMap> composed(const std::function<PointMap> &outer,
                                  const std::function<PointMap> &inner);
 
+/// The half-plane beside a straight line whose position and tilt can be parameters. With n the unit
+/// normal, which points out of the body that touches it,
+///
+///   distance = position - (y - pivot) . n.
+///
+/// `normal`: without tilt; `tilt`: radians, counterclockwise about the point that lies `position`
+/// from the pivot along the normal; empty: none. Throws bad_input for a normal whose length is not
+/// 1. Evaluation throws failure where position or tilt is not finite.
+std::function<Surface> plane_surface(const Point &normal, const Point &pivot,
+                                     const std::function<Coefficient> &position,
+                                     const std::function<Coefficient> &tilt = {});
+bool is_plane(const std::function<Surface> &surface);
+
 /// The outside of a disk about (x, y).
 std::function<Surface> disk_surface(const std::function<Coefficient> &x,
                                     const std::function<Coefficient> &y,
@@ -33,39 +46,16 @@ std::function<Surface> disk_surface(const std::function<Coefficient> &x,
 /// failure where none is found, or phi has no gradient.
 std::function<Surface> level_set(const std::function<PointMap> &value_and_gradient);
 
-/// Unit normal, out of the body, of a surface that the point at(mu, x) faces: -(gradient of the
-/// distance).
-std::function<PointMap> normal_of_surface(const std::function<Surface> &surface,
-                                          const std::function<PointMap> &at);
-
-/// What the partner of a point on the surface is.
-enum class GapKind {
-  closest, ///< the next point
+/// Which point of the surface one of the body faces (Niakh 2022, (3.4)).
+enum class Partner {
+  closest,
   ray,     ///< along the normal of contact
   vertical ///< along e_y
 };
 
-/// What gap_to_surface makes; `along` takes a normal that is known already.
-struct GapToSurface {
-  std::function<Surface> surface;
-  std::function<PointMap> at, normal;
-  GapKind kind;
-  double operator()(const FullMu &mu, const Point &x) const { return along(mu, x, normal(mu, x)); }
-  double along(const FullMu &mu, const Point &x, const Point &n) const;
-  Point partner(const FullMu &mu, const Point &x) const;
-
-private:
-  struct Way {
-    double length;
-    Point direction;
-  };
-  Way way(const FullMu &mu, const Point &from, const Point &n) const;
-};
-
-/// (partner - at) . normal, at = at(mu, x) (Niakh 2022, (3.4)). Evaluation throws failure where the
-/// line misses the surface.
-std::function<PointValue> gap_to_surface(const std::function<Surface> &surface,
-                                         const std::function<PointMap> &at,
-                                         const std::function<PointMap> &normal, GapKind kind);
+/// From y to its partner, of contact with the unit normal n, out of the body. Throws failure where
+/// the line misses the surface.
+Point to_partner(const std::function<Surface> &surface, Partner partner, const FullMu &mu,
+                 const Point &y, const Point &n);
 
 } // namespace rbvi

@@ -41,7 +41,7 @@ struct InterfaceEntities {
 
 /// A function of the parameters alone that an interface or its law is made of.
 struct ContactCoefficient {
-  std::string name; ///< "position of the half-plane", "coefficient of friction"
+  std::string name; ///< "coefficient of friction"
   std::function<double(const FullMu &mu)> value;
 };
 
