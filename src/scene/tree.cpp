@@ -56,6 +56,7 @@ CaseNode &at_path(CaseNode &root, const std::string &line, std::size_t &i) {
     } else {
       if (line[i] == '.') ++i;
       const std::string name = next_name(line, i);
+      if (name.empty()) break; // no path
       at->kind = CaseNode::Kind::table;
       if (at->entries.empty() || at->entries.back().name != name) at->entries.push_back({name, {}});
       at = &at->entries.back().node;

@@ -117,7 +117,7 @@ TEST(StoredScene, IsATreeOfPathsAndValues) {
   EXPECT_EQ(root.find("a")->find("list")->items.size(), 2U);
   EXPECT_EQ(root.find("none")->kind, CaseNode::Kind::list);
   EXPECT_TRUE(root.find("idle")->is_table());
-  for (const char *wrong : {"a\n", "a:1\n", "a[0\n"})
+  for (const char *wrong : {"a\n", "a:1\n", "a[0\n", "{a: 1\n", "a..b: 1\n"})
     EXPECT_TRUE(refuses("lines 'path: value'", [&] { (void)tree_in(wrong); })) << wrong;
   EXPECT_TRUE(refuses("a scene without a name", [] { (void)scene_in("", {}, catalogue()); }));
   EXPECT_TRUE(refuses("the stored case", [] {

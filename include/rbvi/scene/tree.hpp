@@ -34,10 +34,9 @@ struct CaseNode::Entry {
 /// value takes away what is there. Returns false where the path leads through a value or a list.
 bool replace(CaseNode &root, const std::string &path, const CaseNode &value);
 
-/// The values under a node in their order, each by its path:
-/// "contact.floor.against.plane.normal[0]"
-/// -> "0". Of an empty list the path ends with "[]", of an empty table with "{}". A backslash is
-/// before \\ . : [ and { in names.
+/// The values under a node in their order, each by its path: "contact.floor.at" -> "bottom",
+/// "contact.floor.against.plane.normal[0]" -> "0". Of an empty list the path ends with "[]", of an
+/// empty table with "{}". A backslash is before a backslash, a dot, a colon, [ and { in names.
 std::vector<std::pair<std::string, std::string>> values_of(const CaseNode &root);
 /// values_of() as lines "path: value".
 std::string text_of(const CaseNode &root);
