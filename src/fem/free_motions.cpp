@@ -5,12 +5,11 @@
 #include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
-#include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/imposed.hpp"
-#include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/fem/imposed.hpp"
 #include "rbvi/fem/rigid_body_modes.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/scene/stored_scene.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
@@ -276,13 +275,14 @@ void choose_springs(const Bodies &bodies, FreeBody &body) {
   body.springs = qr.q;
 }
 
-/// theta of the first of the exact terms of a on cells of the body that vary least, of those that
-/// are positive: Lame's lambda vanishes at Poisson's ratio 0. Collective.
-std::vector<Factor> coefficient_on(const Scene &scene, const Mesh &mesh, int body) {
+/// The first of the exact terms of a on cells of the body whose theta varies least, of those that
+/// are positive: Lame's lambda vanishes at Poisson's ratio 0; -1: none is. Collective.
+int term_on(const Scene &scene, const Mesh &mesh, int body) {
   const std::vector<Mu> box = corners_and_faces(scene.parameters);
   double least = std::numeric_limits<double>::infinity();
-  std::vector<Factor> result;
-  for (const Term &term : scene.a) {
+  int result = -1;
+  for (std::size_t q = 0; q < scene.a.size(); ++q) {
+    const Term &term = scene.a[q];
     const std::string &region = term.form.region;
     if (!term.theta || !term.form.boundary.empty() || !term.form.means.empty()) continue;
     if (!region.empty() && bodies_in(mesh, mesh.region.at(region))[body] == 0) continue;
@@ -293,7 +293,7 @@ std::vector<Factor> coefficient_on(const Scene &scene, const Mesh &mesh, int bod
     const double variation = theta.maxCoeff() / theta.minCoeff();
     if (!(theta.minCoeff() > 0 && variation < (1 - 1e-6) * least)) continue;
     least = variation;
-    result = *term.theta;
+    result = static_cast<int>(q);
   }
   return result;
 }
@@ -336,11 +336,9 @@ std::vector<FreeBody> add_springs(Scene &scene, const Mesh &mesh, Dofs &dofs) {
   for (FreeBody &body : result) {
     choose_springs(bodies, body);
     body.term = static_cast<int>(scene.a.size());
-    scene.a.push_back(exact_term(elasticity("", Lame{0, 0}, scene.degree),
-                                 coefficient_on(scene, mesh, body.number)));
+    add_held_body(scene, term_on(scene, mesh, body.number));
     dofs.couplings.push_back({{}, body.rows, std::vector<double>(body.rows.size(), 0)});
   }
-  scene.f.push_back(exact_term(body_load("", everywhere(Point{}), scene.components, scene.degree)));
   return result;
 }
 

@@ -1,6 +1,9 @@
 #include "rbvi/scene/stored_scene.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/element/elastic_forms.hpp"
+#include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/scene/case.hpp"
 
 #include <algorithm>
@@ -10,6 +13,8 @@
 namespace rbvi {
 
 namespace {
+
+constexpr const char *held_bodies = "held_by_contact"; ///< of a tree: a list of terms of a
 
 using Values = std::vector<std::pair<std::string, std::string>>;
 
@@ -64,8 +69,8 @@ void take_away_unnamed(CaseNode &root) {
 /// What answers depend on.
 CaseNode counted(const std::string &tree, Compared compared) {
   CaseNode root = tree_in(tree);
-  const std::set<std::string> idle{"rbvi",     "name",    "says",  "free", "train",
-                                   "validate", "require", "tests", "small"};
+  const std::set<std::string> idle{held_bodies, "rbvi",     "name",    "says",  "free",
+                                   "train",     "validate", "require", "tests", "small"};
   take_away(root, [&](const CaseNode::Entry &section) {
     return idle.contains(section.name) ||
            (section.name == "outputs" && compared == Compared::answers);
@@ -102,8 +107,23 @@ const std::string *value_at(const Values &values, const std::string &path) {
 
 } // namespace
 
-Scene scene_in(const std::string &tree, const SceneOptions &options, const Registry &registry) {
-  const CaseNode root = tree_in(tree);
+void add_held_body(Scene &scene, int of) {
+  const CaseNode root = tree_in(scene.tree), *held = root.find(held_bodies);
+  if (held == nullptr)
+    scene.f.push_back(
+        exact_term(body_load("", everywhere(Point{}), scene.components, scene.degree)));
+  const std::vector<Factor> theta = of < 0 ? std::vector<Factor>{} : scene.a.at(of).theta.value();
+  scene.a.push_back(exact_term(elasticity("", Lame{0, 0}, scene.degree), theta));
+  scene.tree += std::string(held_bodies) + "[" +
+                std::to_string(held == nullptr ? 0 : held->items.size()) +
+                "]: " + std::to_string(of) + "\n";
+}
+
+namespace {
+
+/// Without bodies that contact alone holds.
+Scene scene_of(const CaseNode &root, const std::string &tree, const SceneOptions &options,
+               const Registry &registry) {
   if (const CaseNode *program = root.find("program")) {
     Scene scene = while_doing("making the scene of a program by its entry", [&] {
       return make_scene(entry_of(registry, program->value), options);
@@ -119,6 +139,19 @@ Scene scene_in(const std::string &tree, const SceneOptions &options, const Regis
         "(make_scene)");
   Scene scene = read_scene(root);
   scene.options = options;
+  return scene;
+}
+
+} // namespace
+
+Scene scene_in(const std::string &tree, const SceneOptions &options, const Registry &registry) {
+  CaseNode root = tree_in(tree);
+  const CaseNode *held = root.find(held_bodies);
+  const std::vector<CaseNode> terms = held == nullptr ? std::vector<CaseNode>{} : held->items;
+  take_away(root, [](const CaseNode::Entry &entry) { return entry.name == held_bodies; });
+  Scene scene = scene_of(root, tree, options, registry);
+  for (const CaseNode &term : terms)
+    add_held_body(scene, static_cast<int>(parse_number(term.value, held_bodies)));
   return scene;
 }
 

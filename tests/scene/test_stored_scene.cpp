@@ -169,6 +169,24 @@ TEST(StoredScene, WhatChangesNoAnswerDoesNotCount) {
   }
 }
 
+/// The mesh tells them, and the tree keeps them.
+TEST(StoredScene, KeepsBodiesThatContactAloneHolds) {
+  Scene scene = make_scene(read_case(block_case(), "block.yaml"));
+  const std::string before = scene.tree;
+  const std::size_t a = scene.a.size(), f = scene.f.size();
+  add_held_body(scene, 1);
+  add_held_body(scene, -1);
+  EXPECT_EQ(scene.a.size(), a + 2);
+  EXPECT_EQ(scene.f.size(), f + 1);
+  EXPECT_EQ(scene_difference(before, scene.tree), "");
+  const Scene again = made_again(scene);
+  EXPECT_EQ(again.tree, scene.tree);
+  expect_same(scene, again);
+  EXPECT_EQ(coefficient_of(again.a[a], somewhere(scene)),
+            coefficient_of(scene.a[1], somewhere(scene)));
+  EXPECT_EQ(coefficient_of(again.a[a + 1], somewhere(scene)), 1);
+}
+
 TEST(StoredScene, OutputsCountWhereTheyAreAskedFor) {
   const auto of = [](const std::string &twice) {
     return tree_of(

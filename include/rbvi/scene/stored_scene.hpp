@@ -13,6 +13,11 @@ namespace rbvi {
 /// build reads no scene in the case.
 Scene scene_in(const std::string &tree, const SceneOptions &options, const Registry &registry);
 
+/// Adds what a body that contact alone holds asks of a scene: a term of zeros in a with the
+/// coefficient of term `of` of a (-1: 1), with the first body a load of nothing. The tree keeps it,
+/// for the mesh alone tells such bodies.
+void add_held_body(Scene &scene, int of);
+
 /// Whether outputs of the case's own count as well.
 enum class Compared { answers, answers_and_outputs };
 
