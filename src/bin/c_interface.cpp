@@ -295,8 +295,10 @@ rbvi_status rbvi_solve_many(const rbvi_model *model, const double *mu, size_t ro
 }
 
 rbvi_status rbvi_contact(rbvi_workspace *workspace, size_t contact, rbvi_grid *grid) {
-  return with_query(workspace,
-                    [&](SharedQuery &query) { there(grid, "the grid") = query.contact(contact); });
+  return with_query(workspace, [&](SharedQuery &query) {
+    rbvi_grid &to = there(grid, "the grid");
+    to = query.contact(contact);
+  });
 }
 
 rbvi_status rbvi_field(rbvi_workspace *workspace, rbvi_grid *grid) {

@@ -10,14 +10,14 @@
 
 #include <algorithm>
 #include <set>
-#include <tuple>
+#include <vector>
 
 namespace rbvi {
 
 namespace {
 
 constexpr double refined_above = 1e-11;
-constexpr int most_refinements = 2;
+constexpr int most_refinements = 4;
 
 /// The history of friction that a solution leaves, all rows of B on this rank.
 Vector slip_left(const Problem &problem, const Operators &op, const Vector &before,
@@ -129,30 +129,41 @@ MethodResult Condensed::solve(const ContactTask &task) {
 
 MethodResult Condensed::refined(FullBody &body, const ContactTask &task) {
   const Operators &op = task.op;
-  ActiveSetOptions options{!task.continues, options_.looks_for_others, {}};
-  MethodResult result = solve_active_set(body, op, start_of(task), options);
-  if (!result.converged) return result;
-  const auto residual = [&] {
-    return kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda);
+  std::vector<MethodResult> passes;
+  passes.reserve(most_refinements + 1);
+  const auto add = [&](const Vector &start, const ActiveSetOptions &options) {
+    MethodResult &result = passes.emplace_back(solve_active_set(body, op, start, options));
+    if (result.converged)
+      result.kkt = kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda);
+    return result.converged;
   };
-  result.kkt = residual();
-  // H has the round-off of A^-1, which iterative refinement takes out.
-  options = {false, false, Vector::Zero(op.g.size()), &result};
-  for (int pass = 0; pass < most_refinements && !(result.kkt.largest() <= refined_above); ++pass) {
-    options.correction +=
-        op.g - op.b * restrict_to(problem_.trace(), result.free_u.get()) - result.w;
-    const Vector from = result.start.size() > 0 ? result.start : result.lambda;
-    const auto [to_other, iterations, columns] =
-        std::tuple{result.to_other, result.iterations, result.columns};
-    MethodResult next = solve_active_set(body, op, from, options);
-    if (!next.converged) break;
-    result = std::move(next);
-    result.to_other = std::max(to_other, result.to_other);
-    result.iterations += iterations;
-    result.columns += columns;
-    result.kkt = residual();
+  if (!add(start_of(task), {!task.continues, options_.looks_for_others, {}}))
+    return std::move(passes.front());
+  // H has the round-off of A^-1, which iterative refinement takes out; where its own is as large,
+  // the best of the passes counts.
+  Vector correction = Vector::Zero(op.g.size());
+  for (int pass = 0; pass < most_refinements; ++pass) {
+    const MethodResult &last = passes.back();
+    if (last.kkt.largest() <= refined_above) break;
+    correction += op.g - op.b * restrict_to(problem_.trace(), last.free_u.get()) - last.w;
+    if (!add(last.start.size() > 0 ? last.start : last.lambda, {false, false, correction, &last})) {
+      passes.pop_back();
+      break;
+    }
   }
-  return result;
+  const auto best =
+      std::ranges::min_element(passes, {}, [](const MethodResult &of) { return of.kkt.largest(); });
+  int iterations = 0, columns = 0;
+  double to_other = 0;
+  for (const MethodResult &of : passes) {
+    iterations += of.iterations;
+    columns += of.columns;
+    to_other = std::max(to_other, of.to_other);
+  }
+  best->iterations = iterations;
+  best->columns = columns;
+  best->to_other = to_other;
+  return std::move(*best);
 }
 
 /// Contact that follows the displacement.
