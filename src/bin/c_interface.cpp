@@ -5,7 +5,6 @@
 #include "shared_model.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <thread>
 
@@ -86,19 +85,6 @@ template <class Work> rbvi_status with_query(rbvi_workspace *handle, Work &&work
   return busy ? RBVI_BUSY : status;
 }
 
-std::vector<std::byte> file_bytes(const char *name) {
-  if (std::error_code ignored; std::filesystem::is_directory(name, ignored))
-    throw bad_input(std::string(name) + " is a directory, not an image of a model");
-  std::ifstream file(name, std::ios::binary | std::ios::ate);
-  const std::streamoff size = file ? std::streamoff(file.tellg()) : -1;
-  std::vector<std::byte> bytes(size > 0 ? static_cast<std::size_t>(size) : 0);
-  file.seekg(0);
-  // NOLINTNEXTLINE: streams read characters
-  if (size < 0 || !file.read(reinterpret_cast<char *>(bytes.data()), std::ssize(bytes)))
-    throw bad_input(std::string(name) + " cannot be read" + system_reason());
-  return bytes;
-}
-
 void open_image(std::vector<std::byte> image, const std::string &what, rbvi_model **model) {
   there(model, "the place of the model");
   if (!is_image(image))
@@ -176,7 +162,7 @@ const char *rbvi_error(void) {
 rbvi_status rbvi_open(const char *file, rbvi_model **model) {
   return guarded([&] {
     there(file, "the name of the file");
-    open_image(file_bytes(file), file, model);
+    open_image(bytes_of_file(file), file, model);
   });
 }
 

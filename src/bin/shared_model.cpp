@@ -151,10 +151,7 @@ rbvi_grid SharedQuery::field() {
   const ReducedAnswer &of = answered();
   const ReducedModel &model = of_->with_fields();
   const Scene &scene = solver_.scene();
-  Vector u = model.fields.basis * of.u;
-  const Vector given = imposed_at(scene, of.mu, model.fields.points, model.fields.imposed_by);
-  if (given.size() > 0) u += given;
-  return keep(body_grid(scene, of.mu, model, u));
+  return keep(body_grid(scene, of.mu, model, field_of(scene, model.fields, of)));
 }
 
 rbvi_column SharedQuery::column(std::size_t i) const {

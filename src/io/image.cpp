@@ -1,12 +1,14 @@
 #include "rbvi/io/image.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/io/system_error.hpp"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <fstream>
 #include <optional>
 
 namespace rbvi {
@@ -180,6 +182,19 @@ std::string ImageWriter::image(int schema) const {
 bool is_image(Bytes start) {
   return start.size() >= image_magic.size() &&
          std::memcmp(start.data(), image_magic.data(), image_magic.size()) == 0;
+}
+
+std::vector<std::byte> bytes_of_file(const std::filesystem::path &path, std::size_t most) {
+  if (std::error_code ignored; std::filesystem::is_directory(path, ignored))
+    throw bad_input(path.string() + " is a directory, not a model");
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = file ? std::streamoff(file.tellg()) : -1;
+  std::vector<std::byte> bytes(std::min(most, size > 0 ? static_cast<std::size_t>(size) : 0));
+  file.seekg(0);
+  // NOLINTNEXTLINE: streams read characters
+  if (size < 0 || !file.read(reinterpret_cast<char *>(bytes.data()), std::ssize(bytes)))
+    throw bad_input(path.string() + " cannot be read" + system_reason());
+  return bytes;
 }
 
 ImageReader::ImageReader(Bytes image, std::string what, int schema) : what_(std::move(what)) {

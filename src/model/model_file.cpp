@@ -1,32 +1,10 @@
 // model.h5: its data sets are listed in LAYOUT.md beside this file.
-#include "rbvi/core/error.hpp"
-#include "rbvi/io/system_error.hpp"
-#include "rbvi/model/model_image.hpp"
 #include "model_fields.hpp"
 #include "model_list.hpp"
-
-#include <fstream>
+#include "rbvi/core/error.hpp"
+#include "rbvi/model/model_image.hpp"
 
 namespace rbvi {
-
-namespace {
-
-/// The bytes of a file that is an image; empty: it is none, or cannot be read.
-std::vector<std::byte> image_in(const std::filesystem::path &path) {
-  std::array<std::byte, 8> start{};
-  std::ifstream file(path, std::ios::binary);
-  // NOLINTBEGIN: streams read characters
-  if (!file.read(reinterpret_cast<char *>(start.data()), start.size()) || !is_image(start))
-    return {};
-  std::vector<std::byte> bytes(std::filesystem::file_size(path));
-  file.seekg(0);
-  file.read(reinterpret_cast<char *>(bytes.data()), std::ssize(bytes));
-  // NOLINTEND
-  if (!file) throw bad_input(path.string() + " cannot be read" + system_reason());
-  return bytes;
-}
-
-} // namespace
 
 void write_model(const ReducedModel &model, const std::filesystem::path &path) {
   check_model(model);
@@ -38,8 +16,9 @@ void write_model(const ReducedModel &model, const std::filesystem::path &path) {
 
 ReducedModel read_model(const std::filesystem::path &path, const Registry &registry,
                         bool with_fields) {
-  if (const std::vector<std::byte> image = image_in(path); !image.empty())
-    return model_in(image, path.string(), registry, with_fields);
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored) && is_image(bytes_of_file(path, 8)))
+    return model_in(bytes_of_file(path), path.string(), registry, with_fields);
   const H5Reader file(path, "model", model_schema);
   try {
     ReducedModel model;

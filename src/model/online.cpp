@@ -220,11 +220,7 @@ Vector OnlineSolver::contact_gap(const ReducedAnswer &solution) const {
 Vector OnlineSolver::field(const ReducedAnswer &solution) const {
   if (model_.fields.basis.rows() == 0)
     throw failure("the model was read without its fields: no full field can be reconstructed");
-  Vector u = model_.fields.basis * solution.u;
-  const Vector given =
-      imposed_at(scene_, solution.mu, model_.fields.points, model_.fields.imposed_by);
-  if (given.size() > 0) u += given;
-  return u;
+  return field_of(scene_, model_.fields, solution);
 }
 
 Vector OnlineSolver::at_interface(const FullMu &mu, const Vector &columns,
@@ -301,6 +297,13 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedAnswer &solution) const
   contact_outputs(contact_, solution.mu, operators, lambda, least, result);
   check_finite(result);
   return result;
+}
+
+Vector field_of(const Scene &scene, const ModelFields &fields, const ReducedAnswer &solution) {
+  Vector u = fields.basis * solution.u;
+  const Vector given = imposed_at(scene, solution.mu, fields.points, fields.imposed_by);
+  if (given.size() > 0) u += given;
+  return u;
 }
 
 } // namespace rbvi

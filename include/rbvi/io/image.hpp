@@ -14,6 +14,8 @@
 #include "rbvi/core/dense.hpp"
 
 #include <cstddef>
+#include <filesystem>
+#include <limits>
 #include <map>
 #include <span>
 #include <string>
@@ -65,5 +67,9 @@ private:
 
 /// Whether bytes, or the first of them, are those of an image.
 bool is_image(Bytes start);
+
+/// All bytes of a file, or the first `most`. Throws bad_input where it cannot be read.
+std::vector<std::byte> bytes_of_file(const std::filesystem::path &path,
+                                     std::size_t most = std::numeric_limits<std::size_t>::max());
 
 } // namespace rbvi

@@ -99,4 +99,7 @@ private:
   const ContactShares contact_shares_; ///< of reactions
 };
 
+/// At all dofs, without the motion of the scene, with the values that boundaries impose.
+Vector field_of(const Scene &scene, const ModelFields &fields, const ReducedAnswer &solution);
+
 } // namespace rbvi
