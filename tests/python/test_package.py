@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
 """test_package.py MODELS BIN: the package rbvi (on PYTHONPATH) on the small runs."""
 
+import contextlib
 import csv
+import importlib.util
+import io
 import subprocess
 import sys
 import tempfile
@@ -11,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 import rbvi
+from rbvi import _progress
 
 MODELS, BIN = Path(sys.argv[1]), Path(sys.argv[2])
 
@@ -110,6 +114,57 @@ class Answers(unittest.TestCase):
         one, two = (self.model.table(some, threads=threads) for threads in (1, 2))
         for name in self.model.outputs:
             np.testing.assert_array_equal(one[name], two[name])
+
+    def test_progress_changes_nothing(self):
+        some = {next(iter(self.model.parameters)): np.linspace(0.8, 1.2, 500)}
+        every, _progress.EVERY = _progress.EVERY, 1e-4
+        self.addCleanup(setattr, _progress, "EVERY", every)
+        quiet, told = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stderr(quiet):
+            without = self.model.table(some)
+        with contextlib.redirect_stderr(told):
+            shown = self.model.table(some, progress=True)
+        self.assertEqual(quiet.getvalue(), "")
+        self.assertRegex(told.getvalue(), r"\d+ of 500 answers, \d+ s left")
+        np.testing.assert_array_equal(without["energy"], shown["energy"])
+        with self.assertRaises(ZeroDivisionError):
+            _progress.shown_while(lambda: 1 / 0, lambda: 0, 1, True)
+
+
+@unittest.skipUnless(importlib.util.find_spec("openturns"), "openturns is not installed")
+class OfOpenTurns(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.model = rbvi.Model(MODELS / "disk_condensed/model.h5")
+
+    def test_a_sample_is_a_table(self):
+        names = ["tangential_force", "normal_force"]
+        force, box = self.model.openturns(names), self.model.distribution()
+        self.assertEqual(list(force.getInputDescription()), list(self.model.parameters))
+        self.assertEqual(list(force.getOutputDescription()), names)
+        sample = box.getSample(100)
+        table = self.model.table(np.asarray(sample))
+        np.testing.assert_array_equal(np.asarray(force(sample)),
+                                      np.column_stack([table[name] for name in names]))
+        np.testing.assert_array_equal(np.asarray(force(sample[0])), np.asarray(force(sample))[0])
+        self.assertEqual(self.model.openturns().getOutputDimension(), len(self.model.outputs))
+        self.assertEqual(self.model.openturns("energy").getOutputDimension(), 1)
+
+    def test_the_box_is_the_distribution(self):
+        box = self.model.distribution()
+        self.assertEqual(list(box.getDescription()), list(self.model.parameters))
+        for i, one in enumerate(self.model.parameters.values()):
+            bounds = box.getMarginal(i).getRange()
+            self.assertEqual([bounds.getLowerBound()[0], bounds.getUpperBound()[0]],
+                             [one.lower, one.upper])
+
+    def test_no_answer_raises_with_its_reason(self):
+        force, outside = self.model.openturns("energy"), [1e9, 1.0]
+        for wrong in (lambda: force(outside), lambda: force([[1.0, 1.0], outside])):
+            with self.assertRaisesRegex(RuntimeError, "radius"):
+                wrong()
+        with self.assertRaises(rbvi.BadInput):
+            self.model.openturns("enrgy")
 
 
 if __name__ == "__main__":

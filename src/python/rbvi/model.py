@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _library as library
 from ._library import BadInput, call, doubles
+from ._progress import shown_while
 
 
 class Values(dict):
@@ -116,6 +117,7 @@ class Model:
     m.contact(radius=0.8)           pressure, gap, ... along the contact
     m.field(radius=0.8)             displacement and stresses of the bodies
     m.plot("normal_force", x="radius")
+    m.openturns("normal_force")     a function of OpenTURNS; m.distribution(): the box
     m.parameters, m.outputs         what there is, with units, boxes and errors
     """
 
@@ -213,20 +215,25 @@ class Model:
         return np.column_stack([columns.get(name, np.full(count, one.value))
                                 for name, one in self.parameters.items()])
 
-    def table(self, parameters, *, extrapolate=False, threads=0):
+    def table(self, parameters, *, extrapolate=False, threads=0, progress=None):
         """The answers of many parameters, in their order: an array rows x parameters, a dict of
         columns or a DataFrame; `threads` 0: all cores. Rows without an answer are NaN, and
-        Table.status says why."""
+        Table.status says why. `progress`: a line on standard error says how many are done and how
+        long the others take; None: on a terminal, from two seconds on."""
         rows = np.ascontiguousarray(self._rows(parameters))
         outputs = np.empty((len(rows), len(self.outputs)))
         residual, status = np.empty(len(rows)), ["ok"] * len(rows)
+        statuses = np.full(len(rows), -1, dtype=np.intc)  # of each row, once it is done
 
         def tell(row, reason, _):
             status[row] = reason.decode()
 
-        call("solve_many", self._handle, doubles(rows), len(rows), threads,
-             library.EXTRAPOLATE * bool(extrapolate), doubles(outputs), doubles(residual),
-             ctypes.cast(None, ctypes.POINTER(c_int)), library.REASON(tell), None)
+        def solve():
+            call("solve_many", self._handle, doubles(rows), len(rows), threads,
+                 library.EXTRAPOLATE * bool(extrapolate), doubles(outputs), doubles(residual),
+                 statuses.ctypes.data_as(ctypes.POINTER(c_int)), library.REASON(tell), None)
+
+        shown_while(solve, lambda: np.count_nonzero(statuses >= 0), len(rows), progress)
         return Table(Values(zip(self.parameters, rows.T)), Values(zip(self.outputs, outputs.T)),
                      residual, status)
 
@@ -246,6 +253,18 @@ class Model:
         """Displacement and stresses of the bodies; the model's fields must be beside it."""
         self._solve(self._mu(parameters), extrapolate)
         return self._grid("field")
+
+    def openturns(self, outputs=None, *, extrapolate=False):
+        """An openturns.Function of the parameters, in their order, to these outputs (a name, a list;
+        None: all). A point without an answer raises, as OpenTURNS takes NaN for a number; outside
+        of the box there is none unless `extrapolate`."""
+        from ._openturns import function_of
+        return function_of(self, outputs, extrapolate)
+
+    def distribution(self):
+        """The box as a distribution of OpenTURNS: parameters are uniform and independent."""
+        from ._openturns import box_of
+        return box_of(self)
 
     def plot(self, output, x=None, count=101, axes=None, **parameters):
         """An output over a parameter, with the band of its largest error, in matplotlib; `x`: the
