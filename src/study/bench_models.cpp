@@ -100,13 +100,15 @@ std::vector<BenchRow> bench_models(Problem &problem, const ReducedModel &model,
     row.outputs_max = whole.outputs_max;
     rows.push_back(row);
   };
-  with("outputs",
-       [](const Mu &mu, OnlineSolver &solver) { solver.outputs(mu, solver.solve(mu, true)); });
-  with("outputs, field", [](const Mu &mu, OnlineSolver &solver) {
-    const ReducedAnswer answer = solver.solve(mu, true);
-    solver.outputs(mu, answer);
-    solver.field(answer);
-  });
+  if (whole.queries > 0) { // it has an answer everywhere
+    with("outputs",
+         [](const Mu &mu, OnlineSolver &solver) { solver.outputs(mu, solver.solve(mu, true)); });
+    with("outputs, field", [](const Mu &mu, OnlineSolver &solver) {
+      const ReducedAnswer answer = solver.solve(mu, true);
+      solver.outputs(mu, answer);
+      solver.field(answer);
+    });
+  }
   for (BenchRow &row : rows)
     if (row.u_mean >= 0) row.offline = offline;
   return rows;
