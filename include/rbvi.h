@@ -95,6 +95,12 @@ RBVI_API rbvi_status rbvi_outputs(rbvi_workspace *workspace, double *values);
  * the model has one. NaN outside of the box. Either may be null. */
 RBVI_API rbvi_status rbvi_errors(rbvi_workspace *workspace, double *expected, double *bounds);
 
+/* Derivatives of the outputs by the parameters, of the last rbvi_solve: `values` outputs x
+ * parameters, row by row; NaN where an output counts, or is a check of the answer. `kinked`: one for
+ * each parameter, 1 where a node is about to touch, lift, stick or slip, so that derivatives are
+ * those of one side, or between both; may be null. */
+RBVI_API rbvi_status rbvi_gradients(rbvi_workspace *workspace, double *values, int *kinked);
+
 typedef struct rbvi_answer {
   int inside;        /* of the box */
   double residual;   /* of the reduced problem, relative */

@@ -259,6 +259,11 @@ rbvi_status rbvi_errors(rbvi_workspace *workspace, double *expected, double *bou
   return with_query(workspace, [&](SharedQuery &query) { query.errors(expected, bounds); });
 }
 
+rbvi_status rbvi_gradients(rbvi_workspace *workspace, double *values, int *kinked) {
+  return with_query(
+      workspace, [&](SharedQuery &query) { query.gradients(&there(values, "values"), kinked); });
+}
+
 rbvi_status rbvi_answer_of(rbvi_workspace *workspace, rbvi_answer *answer) {
   return with_query(workspace,
                     [&](SharedQuery &query) { there(answer, "the answer") = query.answer(); });

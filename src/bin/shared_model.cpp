@@ -1,6 +1,7 @@
 #include "shared_model.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/model/gradient.hpp"
 #include "rbvi/model/solution_vtu.hpp"
 #include "rbvi/model/training_samples.hpp"
 #include "rbvi/scene/tree.hpp"
@@ -117,6 +118,12 @@ void SharedQuery::errors(double *expected, double *bounds) const {
     if (expected != nullptr) expected[i] = inside_ ? of_->output(i).largest_error : unknown;
     if (bounds != nullptr) bounds[i] = unknown; // no model has one
   }
+}
+
+void SharedQuery::gradients(double *values, int *kinked) {
+  const OutputGradient found = gradient_of(solver_, mu_, answered(), of_->columns());
+  Eigen::Map<decltype(points_)>(values, found.values.rows(), found.values.cols()) = found.values;
+  if (kinked != nullptr) std::ranges::copy(found.kinked, kinked);
 }
 
 rbvi_answer SharedQuery::answer() const {

@@ -54,6 +54,7 @@ public:
   /// Those below need an answer, and throw bad_input without.
   void outputs(double *values) const;
   void errors(double *expected, double *bounds) const;
+  void gradients(double *values, int *kinked);
   rbvi_answer answer() const;
   /// The grid stays until the next one.
   rbvi_grid contact(std::size_t i);

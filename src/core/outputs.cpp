@@ -181,7 +181,7 @@ void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutpu
   for (const OutputColumn &column : columns_of({outputs})) {
     const std::optional<double> value = column.of(outputs);
     const std::string digits = value ? formatted("%.10g", *value) : "(no value)";
-    out << std::left << std::setw(22) << column.name << digits;
+    out << std::left << std::setw(21) << column.name << ' ' << digits;
     const auto error = errors.find(column.name);
     if (error != errors.end())
       out << std::setw(static_cast<int>(18 - digits.size())) << ""

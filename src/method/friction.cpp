@@ -24,6 +24,7 @@ struct Kept {
   std::set<std::string> known;  ///< keys of active sets on the way to answers to the last q
   std::optional<System> system; ///< in the plane, the last one of the laws themselves
   std::string key;              ///< of its sets
+  std::optional<ActiveSets> sets; ///< of the last answer
 };
 
 } // namespace friction
@@ -267,6 +268,7 @@ private:
     result.has_others = result.converged && best_.negative && laws_.dim == 2 && !laws_.jump();
     best_.x = laws_.feasible(std::move(best_.x));
     if (!result.converged || kept_.key != best_sets_.key()) kept_.system.reset();
+    kept_.sets = best_sets_;
     if (!result.converged) {
       best_ = evaluate(h_, q_, std::move(best_.x));
       result.residual = judge(h_.diagonal(), laws_, best_, best_sets_, options_.tolerance).residual;
@@ -341,6 +343,14 @@ struct FrictionSolver::Parts {
   FrictionOptions options;
   bool by_rule = false;
   Kept kept;
+
+  /// The last answer(), and the system of its active sets once that is asked for.
+  struct Answered {
+    Vector x, start;
+    ActiveSets sets;
+    std::optional<System> tangent{};
+  };
+  std::optional<Answered> last;
 };
 
 FrictionSolver::FrictionSolver(ColumnSource columns, const NodeLaws &laws)
@@ -354,7 +364,27 @@ FrictionAnswer FrictionSolver::answer(const Vector &q, const Vector &start, bool
   parts_->options = options;
   parts_->by_rule = by_rule;
   parts_->kept.known.clear();
-  return parts_->run(start, by_rule, false);
+  parts_->last.reset();
+  FrictionAnswer answer = parts_->run(start, by_rule, false);
+  if (!answer.converged) return answer;
+  const Vector x = parts_->order.inwards(answer.x);
+  parts_->last = {x, parts_->order.inwards(answer.start),
+                  parts_->given.friction() ? *parts_->kept.sets : contact_sets(parts_->laws, x)};
+  return answer;
+}
+
+NearAnswer FrictionSolver::near(const Vector &left, const NodeLaws &laws) const {
+  if (!parts_->last) throw failure("friction: there is no answer to go on from");
+  Parts::Answered &last = *parts_->last;
+  const LazyColumns &h = parts_->h;
+  const Order &order = parts_->order;
+  const Laws other = laws_of(laws);
+  if (!last.tangent) last.tangent.emplace(h, parts_->laws, last.sets);
+  const State point = last.tangent->near(h, last.x, parts_->laws, order.inwards(left), other);
+  if (!point.x.allFinite()) throw failure("friction: what touches does not tell its tractions");
+  const Vector start = smooth_start(h.diagonal(), other, point);
+  return {order.outwards(point.x), order.outwards(point.w), order.outwards(start),
+          predicted_sets(other, start).key() == predicted_sets(parts_->laws, last.start).key()};
 }
 
 FrictionAnswer FrictionSolver::another(const Vector &start, bool by_rule) {

@@ -375,6 +375,21 @@ Solved System::step(const LazyColumns &h, const Vector &q, const Laws &laws, int
   return Solved::yes;
 }
 
+State System::near(const LazyColumns &h, const Vector &x, const Laws &laws, const Vector &left,
+                   const Laws &other_laws) const {
+  Vector moved = Vector::Zero(x.size());
+  for (Index i = 0; i < laws.nodes; ++i)
+    if (sets_.tangent_at(i) == Tangent::slip) {
+      const FrictionBound::Piece now = sets_.piece_of(other_laws, i);
+      const double change = now.slope - sets_.piece_of(laws, i).slope;
+      moved.segment(laws.tangent(i), laws.dim - 1) =
+          (now.offset + change * x[i]) * sets_.direction.col(i);
+    }
+  const Vector q = left - (evaluate(h, Vector::Zero(x.size()), x).w);
+  const Vector right = right_side(evaluate(h, q, moved).w);
+  return evaluate(h, q, expand(other_laws, sets_, list_, solve(right, 1), std::move(moved)));
+}
+
 Matrix System::change(const Laws &laws, const Matrix &of_q) const {
   Matrix result(of_q.rows(), of_q.cols());
   for (Index k = 0; k < of_q.cols(); ++k)

@@ -128,6 +128,9 @@ public:
               State &point) const;
   /// Changes of x in the plane by those of q (columns), while the sets stay.
   Matrix change(const Laws &laws, const Matrix &of_q) const;
+  /// As FrictionSolver::near, of the point x that the sets gave by `laws`.
+  State near(const LazyColumns &h, const Vector &x, const Laws &laws, const Vector &left,
+             const Laws &other_laws) const;
 
 private:
   void assemble(const LazyColumns &h, const Laws &laws);

@@ -220,4 +220,19 @@ ReducedAnswer ConeSolver::solve(const FullMu &mu, Relaxed relaxed) {
   return answer;
 }
 
+/// From the generators that act: where they stay, by one factorisation of theirs.
+std::optional<ReducedAnswer> ConeSolver::near(const ReducedAnswer &from, const FullMu &mu) {
+  if (from.motions || follows_state(contact_)) return {};
+  ReducedAnswer answer;
+  answer.mu = mu;
+  const Index signs = from.lambda.size() - model_.contact.free_modes;
+  std::vector<Index> active;
+  for (Index j = 0; j < signs; ++j)
+    if (from.lambda[j] > 0) active.push_back(j);
+  qp_.start_from(std::move(active));
+  solve_from_start(answer);
+  answer.passes_kink = differs_in_contact(from.lambda.head(signs), answer.lambda.head(signs));
+  return answer;
+}
+
 } // namespace rbvi

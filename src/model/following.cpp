@@ -49,8 +49,20 @@ Start FollowingSolver::start(const FullMu &mu) const {
 }
 
 ReducedAnswer FollowingSolver::solve(const FullMu &mu, Relaxed relaxed) {
+  return solve_from(start(mu), mu, relaxed.beta);
+}
+
+std::optional<ReducedAnswer> FollowingSolver::near(const ReducedAnswer &from, const FullMu &mu) {
+  if (from.motions) return {};
+  ReducedAnswer answer = solve_from({from.contact.state.displacement, from.start}, mu, {});
+  answer.passes_kink = differs_in_contact(from.lambda, answer.lambda);
+  return answer;
+}
+
+ReducedAnswer FollowingSolver::solve_from(const Start &start, const FullMu &mu,
+                                          const Vector &beta) {
   if (evaluated_.set_compliance(mu) && nodal_) nodal_->forget();
-  at_mu_.set(mu, relaxed.beta);
+  at_mu_.set(mu, beta);
   Vector load, unloaded; // half response to it, the displacement without contact
   Compliance &compliance = evaluated_.compliance();
   NonlinearContact problem{.compliance = &compliance,
@@ -70,7 +82,7 @@ ReducedAnswer FollowingSolver::solve(const FullMu &mu, Relaxed relaxed) {
   FollowedContact followed{
       .contact = contact_, .mu = mu, .rows = rows_are_identity_ ? nullptr : &evaluated_.rows()};
   NonlinearResult found =
-      solve_following(followed, nodal_ ? &*nodal_ : nullptr, problem, start(mu), options);
+      solve_following(followed, nodal_ ? &*nodal_ : nullptr, problem, start, options);
   check_residual(found.residual, query_residual_limit,
                  ": reduce again with more training parameters");
   ReducedAnswer answer;

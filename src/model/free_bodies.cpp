@@ -10,6 +10,12 @@
 
 namespace rbvi {
 
+double energy_of_springs(const ReducedModel &model, const Scene &scene,
+                         const ReducedAnswer &answer) {
+  if (answer.beta.size() == 0) return 0;
+  return spring_coefficients(model, scene, answer.mu).dot(answer.beta.cwiseAbs2()) / 2;
+}
+
 FreeMotions free_motions_at(const BodyAtMu &body, const Matrix &motions, Matrix held,
                             NodeLaws laws) {
   const Vector load = body.given_load();
@@ -72,8 +78,8 @@ ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, con
   method.displace(answer);
   answer.iterations = iterations;
   answer.to_other = to_other;
-  const Vector theta = spring_coefficients(model, scene, mu);
-  answer.energy += theta.dot(balanced.cwiseAbs2()) / 2;
+  answer.beta = balanced;
+  answer.energy += energy_of_springs(model, scene, answer);
   return answer;
 }
 

@@ -15,15 +15,18 @@ public:
                 const QueryOptions &options, bool by_rule);
   ReducedAnswer solve(const FullMu &mu, Relaxed relaxed) override;
   void displace(ReducedAnswer &answer) override;
+  std::optional<ReducedAnswer> near(const ReducedAnswer &from, const FullMu &mu) override;
   /// From answer.start, where that is there, or from what the samples predict.
   void solve_at_nodes(const LawAtMu &law, ReducedAnswer &answer);
   LawProblem &problem() { return problem_; }
 
 private:
   const ReducedModel &model_;
+  const Scene &scene_;
   const bool by_rule_, looks_for_others_;
   LawProblem problem_;
-  Starts<Vector> starts_; ///< FrictionResult::start
+  std::unique_ptr<FrictionSolver> near_; ///< of the answer that near() goes on from
+  Starts<Vector> starts_;                ///< FrictionResult::start
 };
 
 /// At every node, contact that follows the displacement.
@@ -32,9 +35,11 @@ public:
   FollowingSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
                   const QueryOptions &options, bool by_rule);
   ReducedAnswer solve(const FullMu &mu, Relaxed relaxed) override;
+  std::optional<ReducedAnswer> near(const ReducedAnswer &from, const FullMu &mu) override;
 
 private:
   Start start(const FullMu &mu) const;
+  ReducedAnswer solve_from(const Start &start, const FullMu &mu, const Vector &beta);
 
   const ReducedModel &model_;
   const Scene &scene_;

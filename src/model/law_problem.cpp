@@ -61,9 +61,22 @@ void LawProblem::set(const FullMu &mu, const Vector &state, ReducedAnswer &answe
     law_.unloaded = at_mu_.transposed_half_response(law_.load);
     law_.q -= contact_->times(law_.unloaded);
   }
-  friction_.emplace(
-      [this](const std::vector<Index> &which) { return contact_->condensed_columns(which); },
-      law_.laws);
+  friction_.reset();
+}
+
+FrictionSolver &LawProblem::friction() {
+  if (!friction_)
+    friction_ = std::make_unique<FrictionSolver>(
+        [this](const std::vector<Index> &which) { return contact_->condensed_columns(which); },
+        law_.laws);
+  return *friction_;
+}
+
+Vector LawProblem::left(const LawAtMu &law, const Vector &x) {
+  std::vector<Index> support;
+  for (Index j = 0; j < x.size(); ++j)
+    if (x[j] != 0) support.push_back(j);
+  return contact_->condensed_columns(support) * x(support) + law.q;
 }
 
 void LawProblem::set_springs(ReducedAnswer &answer) {

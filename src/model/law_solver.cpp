@@ -14,7 +14,7 @@ bool has_several_answers(const ReducedModel &model) {
 
 NodeLawSolver::NodeLawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
                              const QueryOptions &options, bool by_rule)
-    : model_(model), by_rule_(by_rule || rests_at_start(model, scene)),
+    : model_(model), scene_(scene), by_rule_(by_rule || rests_at_start(model, scene)),
       looks_for_others_(options.looks_for_others || by_rule), problem_(model, scene, contact),
       starts_(scene.parameters, model.contact.law->starts_mu, options.warm) {}
 
@@ -51,6 +51,34 @@ ReducedAnswer NodeLawSolver::solve(const FullMu &mu, Relaxed relaxed) {
 void NodeLawSolver::displace(ReducedAnswer &answer) {
   problem_.displace(answer);
   starts_.keep(answer.start);
+}
+
+std::optional<ReducedAnswer> NodeLawSolver::near(const ReducedAnswer &from, const FullMu &mu) {
+  if (auto last = problem_.take_friction()) near_ = std::move(last);
+  ReducedAnswer answer;
+  answer.beta = from.beta;
+  const LawAtMu &law = problem_.at(mu, answer, {}, answer.beta);
+  const Vector left = problem_.left(law, from.lambda); // with the springs as they were
+  NearAnswer found = near_->near(left, law.laws);
+  if (answer.motions) {
+    const FreeMotions &motions = *answer.motions;
+    Matrix slope(left.size(), law.by_beta.cols());
+    for (Index k = 0; k < slope.cols(); ++k)
+      slope.col(k) = near_->near(left + law.by_beta.col(k), law.laws).x - found.x;
+    const Vector change = lu_solve(motions.held.transpose() * slope,
+                                   motions.load - motions.held.transpose() * found.x);
+    if (!change.allFinite()) throw failure("nothing holds a body at the answer");
+    answer.beta += change;
+    found = near_->near(left + law.by_beta * change, law.laws);
+    problem_.at(mu, answer, {}, answer.beta);
+  }
+  answer.energy = 0.5 * (found.x.dot(found.w - law.q) - law.load.squaredNorm()) +
+                  energy_of_springs(model_, scene_, answer);
+  answer.passes_kink = !found.same_states;
+  answer.lambda = std::move(found.x);
+  answer.start = std::move(found.start);
+  problem_.displace(answer);
+  return answer;
 }
 
 std::map<MultiplierReduction, LawSolverMaker> &law_solvers() {

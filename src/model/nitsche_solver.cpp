@@ -78,31 +78,58 @@ ReducedNitsche::Quadratic ReducedNitsche::quadratic_at(const FullMu &all_paramet
   return result;
 }
 
-ReducedAnswer ReducedNitsche::solve(const FullMu &all_parameters, Relaxed) {
-  System &system = *system_;
-  const NitscheModel &nitsche = *model_.contact.nitsche;
-  system.mu.clear(); // until its quadratic is there
-  system.quadratic = quadratic_at(all_parameters);
-  system.mu = all_parameters;
+ReducedNitsche::System &ReducedNitsche::system_at(const FullMu &all_parameters) {
+  system_->mu.clear(); // until its quadratic is there
+  system_->quadratic = quadratic_at(all_parameters);
+  system_->mu = all_parameters;
+  return *system_;
+}
+
+ReducedAnswer ReducedNitsche::answer_of(const System &system, int iterations) const {
   ReducedAnswer answer;
-  answer.mu = all_parameters;
+  answer.mu = system.mu;
+  answer.u = system.u;
+  answer.residual = system.relative;
+  answer.iterations = iterations;
+  answer.energy =
+      0.5 * answer.u.dot(system.quadratic.a * answer.u) - system.quadratic.f.dot(answer.u);
+  return answer;
+}
+
+ReducedAnswer ReducedNitsche::solve(const FullMu &all_parameters, Relaxed) {
+  System &system = system_at(all_parameters);
+  const NitscheModel &nitsche = *model_.contact.nitsche;
+  int iterations = 0;
   if (interpolated_) {
     InterpolatedAnswer found = interpolated_->solve(
         all_parameters, from_rest_ ? Vector() : starts_.fit(nitsche.starts, all_parameters),
         system.quadratic.a_gamma, system.quadratic.f);
     system.u = std::move(found.u);
     system.relative = found.residual;
-    answer.iterations = found.iterations;
+    iterations = found.iterations;
   } else {
     system.set_points(layer_, all_parameters);
     system.predict(starts_.fit(nitsche.starts, all_parameters),
                    starts_.fit(nitsche.states, all_parameters));
-    answer.iterations = system.settle();
+    iterations = system.settle();
   }
-  answer.u = system.u;
-  answer.residual = system.relative;
-  answer.energy =
-      0.5 * answer.u.dot(system.quadratic.a * answer.u) - system.quadratic.f.dot(answer.u);
+  return answer_of(system, iterations);
+}
+
+std::optional<ReducedAnswer> ReducedNitsche::near(const ReducedAnswer &from, const FullMu &mu) {
+  if (interpolated_) return {};
+  System &system = system_at(mu);
+  system.set_points(layer_, mu);
+  system.set(from.u);
+  system.set_bounds();
+  // The curvatures of the points tell what touches and what sticks.
+  const auto curvatures = [&] {
+    return system.terms.weighted(&PointTerm::curvature, system.pressures, system.bounds);
+  };
+  const Vector before = curvatures();
+  const int iterations = system.settle();
+  ReducedAnswer answer = answer_of(system, iterations);
+  answer.passes_kink = ((before.array() != 0) != (curvatures().array() != 0)).any();
   return answer;
 }
 

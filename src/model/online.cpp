@@ -190,13 +190,27 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOp
 ReducedAnswer OnlineSolver::solve(const Mu &mu, bool extrapolate) {
   check_query(scene_, mu, extrapolate);
   return while_doing("solving the reduced problem at " + describe(scene_.parameters, mu), [&] {
-    ReducedAnswer solution =
-        solve_balanced(*method_, model_, scene_, expand(scene_.parameters, mu));
-    if (const AffineTerms &imposed = model_.body.imposed_energy; imposed.size() > 0)
-      solution.energy += imposed.reduced.row(0).dot(
-          affine_coefficients(imposed, imposed_energy_, scene_, solution.mu));
-    return solution;
+    return with_imposed_energy(
+        solve_balanced(*method_, model_, scene_, expand(scene_.parameters, mu)));
   });
+}
+
+ReducedAnswer OnlineSolver::near(const ReducedAnswer &from, const Mu &mu) {
+  return while_doing("following the answer to " + describe(scene_.parameters, mu), [&] {
+    const FullMu all = expand(scene_.parameters, mu);
+    if (std::optional<ReducedAnswer> found = method_->near(from, all))
+      return with_imposed_energy(std::move(*found));
+    ReducedAnswer found = solve_balanced(*method_, model_, scene_, all);
+    found.passes_kink = differs_in_contact(from.lambda, found.lambda);
+    return with_imposed_energy(std::move(found));
+  });
+}
+
+ReducedAnswer OnlineSolver::with_imposed_energy(ReducedAnswer answer) const {
+  if (const AffineTerms &imposed = model_.body.imposed_energy; imposed.size() > 0)
+    answer.energy += imposed.reduced.row(0).dot(
+        affine_coefficients(imposed, imposed_energy_, scene_, answer.mu));
+  return answer;
 }
 
 Vector OnlineSolver::multiplier(const ReducedAnswer &solution) const {

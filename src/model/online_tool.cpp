@@ -6,6 +6,7 @@
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/io/system_error.hpp"
 #include "rbvi/io/write_atomically.hpp"
+#include "rbvi/model/gradient.hpp"
 #include "rbvi/model/model_image.hpp"
 #include "rbvi/model/print.hpp"
 #include "rbvi/model/solution_vtu.hpp"
@@ -53,6 +54,7 @@ void check_combination(const OnlineArguments &given) {
   if (one && many) throw bad_input("--mu and --queries exclude each other");
   if (!given.pack.empty() && (one || many))
     throw bad_input("--pack takes no --mu and no --queries");
+  if (given.gradient && !one && !many) throw bad_input("--gradient needs --mu or --queries");
   if (given.warm && !many) throw bad_input("--warm needs --queries");
   if (!given.vtu.empty() && !one) throw bad_input("--vtu needs --mu");
   if (!given.out.empty() && !one && !many) throw bad_input("--out needs --mu or --queries");
@@ -85,6 +87,9 @@ const std::vector<OnlineOption> &online_options() {
        "the model as one image for librbvi (include/rbvi.h), with its fields where their file is",
        &Arguments::pack},
       {"full", "", "reconstruct the field: adds min_u", nullptr, &Arguments::full},
+      {"gradient", "",
+       "derivatives of the outputs by the parameters, in the units of both: d_OUTPUT_d_PARAMETER",
+       nullptr, &Arguments::gradient},
       {"decorrelated", "", "without the supremizers or responses beside the modes", nullptr,
        &Arguments::decorrelated},
       {"extrapolate", "",
@@ -111,6 +116,11 @@ Outputs answer(OnlineSolver &solver, const Mu &mu, const OnlineArguments &argume
   Outputs outputs = solver.outputs(mu, solution);
   if (arguments.full && solver.scene().components == 1)
     outputs.min_u = solver.field(solution).minCoeff();
+  if (arguments.gradient) {
+    const std::vector<OutputColumn> columns = columns_of({outputs});
+    add_gradient(gradient_of(solver, mu, solution, columns), columns, solver.scene().parameters,
+                 outputs);
+  }
   outputs.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return outputs;
 }
@@ -215,7 +225,7 @@ void run(const OnlineArguments &arguments, const Registry &registry, std::ostrea
   }
   const bool packs = !arguments.pack.empty();
   const bool fields = arguments.full || !arguments.vtu.empty() ||
-                      (packs && fs::exists(fields_file(arguments.model)));
+                      (packs && std::filesystem::exists(fields_file(arguments.model)));
   ReducedModel model = read_model(arguments.model, registry, fields);
   if (arguments.decorrelated) model = leading(model, model.body.modes, model.contact.generators);
   if (packs) {

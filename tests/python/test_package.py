@@ -74,6 +74,22 @@ class Answers(unittest.TestCase):
         self.assertIn(first, outside.status[0])
         self.assertTrue(np.isnan(outside["normal_force"][0]))
 
+    def test_gradients(self):
+        middle = self.middle()
+        of = self.model.gradient(**middle)
+        self.assertEqual(of.answer["normal_force"], self.model(**middle)["normal_force"])
+        for name, one in self.model.parameters.items():
+            step = 1e-3 * (one.upper - one.lower)
+            sides = [self.model(**{**middle, name: middle[name] + k * step})["normal_force"]
+                     for k in (-2, -1, 1, 2)]
+            expected = (sides[0] - 8 * sides[1] + 8 * sides[2] - sides[3]) / (12 * step)
+            self.assertAlmostEqual(of["normal_force"][name], expected, delta=1e-6 * abs(expected))
+            self.assertIs(of.kinked[name], False)
+        self.assertTrue(np.isnan(of["iterations"][name]))
+        self.assertIn("normal_force", repr(of))
+        with self.assertRaisesRegex(rbvi.BadInput, "nearest one is 'normal_force'"):
+            of["normal_forse"]
+
     def test_the_trace_carries_the_force(self):
         answer = self.model(**self.middle())
         trace = self.model.contact(**self.middle())

@@ -33,6 +33,13 @@ FrictionAnswer friction_answer(const ColumnSource &columns, const Vector &q, con
                                const Vector &start, bool by_rule,
                                const FrictionOptions &options = {});
 
+/// An answer near another one, to first order, with the active sets of that.
+struct NearAnswer {
+  Vector x, w;
+  Vector start;     ///< FrictionResult::start
+  bool same_states; ///< whether `start` tells the same active sets
+};
+
 /// Problems of friction.hpp one after another that differ in q alone: of H each column is asked for
 /// once.
 class FrictionSolver {
@@ -50,6 +57,11 @@ public:
   /// Changes of the x of the last answer() by those of q (columns), while its active sets stay;
   /// empty where they are not known: in space, or without friction. To be asked before another().
   Matrix change(const Matrix &of_q) const;
+  /// The answer where H, q and the laws are others, near the last answer(): one step with the
+  /// system of its active sets, which is factorised once. `left`: of that problem, H x + q at the x
+  /// of that answer; `laws`: of that problem, of the same nodes. Throws failure where there is no
+  /// answer, or the system is singular.
+  NearAnswer near(const Vector &left, const NodeLaws &laws) const;
   const NodeLaws &laws() const;
   bool by_rule() const; ///< the last answer()
 

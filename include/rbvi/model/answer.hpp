@@ -24,7 +24,15 @@ struct ReducedAnswer : Answer {
   /// Largest distance to another answer that was seen, relative to the largest multiplier; 0: none.
   double to_other = 0;
   std::optional<FreeMotions> motions{}; ///< of bodies that contact alone holds
+  Vector beta{};                        ///< what their springs are relaxed at
+  /// Of OnlineSolver::near: whether a node comes to another state on the way.
+  bool passes_kink = false;
 };
+
+/// Whether some multiplier is above zero in one of them alone.
+inline bool differs_in_contact(const Vector &lambda, const Vector &other) {
+  return ((lambda.array() > 0) != (other.array() > 0)).any();
+}
 
 /// What the springs of free bodies are relaxed at, and the answer at the same mu with springs
 /// relaxed elsewhere, from which a solve starts; empty: from what the samples predict.
@@ -64,6 +72,9 @@ public:
   virtual ReducedAnswer solve(const FullMu &mu, Relaxed relaxed) = 0;
   /// Sets the displacement of the last answer of solve(), where that leaves it.
   virtual void displace(ReducedAnswer &) {}
+  /// The answer at a mu near that of `from`, the last one of solve(), to first order: by the linear
+  /// system of its active sets, or Newton's method from it. Nothing: this method solves anew.
+  virtual std::optional<ReducedAnswer> near(const ReducedAnswer &, const FullMu &) { return {}; }
 };
 
 } // namespace rbvi

@@ -32,6 +32,7 @@ public:
   /// is not positive definite, if the KKT residual exceeds 1e-8, or if a node that the dual basis
   /// takes to be in contact is pulled at by more than 1 % of the peak pressure.
   ReducedAnswer solve(const FullMu &mu, Relaxed relaxed) override;
+  std::optional<ReducedAnswer> near(const ReducedAnswer &from, const FullMu &mu) override;
 
 private:
   /// Of the answer at a sample, where the model has it.

@@ -13,6 +13,10 @@ namespace rbvi {
 FreeMotions free_motions_at(const BodyAtMu &body, const Matrix &motions, Matrix held,
                             NodeLaws laws);
 
+/// That the springs add to the energy of an answer, relaxed at its beta.
+double energy_of_springs(const ReducedModel &model, const Scene &scene,
+                         const ReducedAnswer &answer);
+
 /// Whether queries start from rest, by the rule of friction_answer: with friction forces may balance
 /// in several answers, and this is the one of the full model.
 bool rests_at_start(const ReducedModel &model, const Scene &scene);

@@ -36,8 +36,13 @@ public:
   /// there is a beta; of an answer at this mu that has them only q and the load change with beta.
   const LawAtMu &at(const FullMu &mu, ReducedAnswer &answer, const Vector &state = {},
                     const Vector &beta = {});
-  ReducedContact &contact() { return *contact_; }   ///< of the last at()
-  FrictionSolver &friction() { return *friction_; } ///< likewise
+  ReducedContact &contact() { return *contact_; } ///< of the last at()
+  FrictionSolver &friction();                     ///< likewise
+  /// That of the last at(), if friction() was asked for: of the columns that it knows it has those
+  /// at the mu of before.
+  std::unique_ptr<FrictionSolver> take_friction() { return std::move(friction_); }
+  /// H x + q.
+  Vector left(const LawAtMu &law, const Vector &x);
   const BodyAtMu &body() const { return at_mu_; }
   AtAllNodes at_all_nodes(const LawAtMu &law, const Vector &x);
   /// KktResidual::largest() of multipliers with w = H x + q.
@@ -61,7 +66,7 @@ private:
   const std::unique_ptr<ReducedContact> contact_;
   std::optional<FullMu> mu_; ///< of the next ones
   LawAtMu law_;
-  std::optional<FrictionSolver> friction_;
+  std::unique_ptr<FrictionSolver> friction_; ///< null: not asked for
   // Of springs of free bodies: their coefficients, half responses and displacements to them, and
   // what of the law there is without them.
   Vector theta_, q_, load_, unloaded_;

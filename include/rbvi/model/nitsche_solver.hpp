@@ -50,6 +50,7 @@ public:
   /// failure, saying what to try, where Newton's method does not converge or the tangent is not
   /// positive definite.
   ReducedAnswer solve(const FullMu &all_parameters, Relaxed = {}) override;
+  std::optional<ReducedAnswer> near(const ReducedAnswer &from, const FullMu &mu) override;
 
   /// What each point adds to the residual of the last answer, n x points, ...
   Matrix point_residuals() const;
@@ -73,6 +74,10 @@ private:
     Vector f;
   };
   Quadratic quadratic_at(const FullMu &all_parameters) const;
+  /// The system at mu, without its points.
+  System &system_at(const FullMu &all_parameters);
+  /// What it has come to.
+  ReducedAnswer answer_of(const System &system, int iterations) const;
   /// The answer with the integrals over the whole curve, from u. Sets quadrature_residual, of u.
   /// `faces`: of all cells at rest.
   Vector over_whole_curve(const FullMu &all_parameters, const std::vector<NitscheFace> &faces,

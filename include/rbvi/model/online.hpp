@@ -55,6 +55,10 @@ public:
   /// `mu`: the free parameters; throws bad_input outside the box unless `extrapolate`, and failure,
   /// saying what to try, where the method has no answer.
   ReducedAnswer solve(const Mu &mu, bool extrapolate = false);
+  /// The answer at a mu near that of `from`, the last one of solve(), to first order: its active
+  /// sets stay, or Newton's method goes on from it (QueryMethod::near). Throws failure where it
+  /// cannot be told.
+  ReducedAnswer near(const ReducedAnswer &from, const Mu &mu);
   /// Energy, forces and contact measures of an answer, at a cost that depends on the contact region
   /// alone (min_u is left unset: it needs the full field). Expected errors are set inside the box.
   /// Throws failure (check_finite).
@@ -86,6 +90,7 @@ private:
 
   void add_outputs_of_scene(const ReducedAnswer &solution, const Vector &lambda,
                             Outputs &outputs) const;
+  ReducedAnswer with_imposed_energy(ReducedAnswer answer) const;
 
   const ReducedModel &model_;
   const Scene scene_; ///< with_imposed_loads

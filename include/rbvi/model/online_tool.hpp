@@ -10,8 +10,8 @@ namespace rbvi {
 
 struct OnlineArguments {
   std::string model, mu, queries, out, vtu, pack, precision, method; ///< "" where not given
-  bool extrapolate = false, decorrelated = false, full = false, warm = false, help = false,
-       version = false;
+  bool extrapolate = false, decorrelated = false, full = false, gradient = false, warm = false,
+       help = false, version = false;
   /// Of the outputs in tables.
   int digits() const { return precision.empty() ? 10 : std::stoi(precision); }
 };

@@ -9,9 +9,9 @@ Model answers; new, check, solve, offline and verify run the programs on a case 
 """
 
 from ._library import LIBRARY, BadInput, NoAnswer, RbviError
-from .model import Answer, Grid, Model, Table
+from .model import Answer, Gradient, Grid, Model, Table
 from .programs import check, new, offline, solve, verify
 
-__all__ = ["Answer", "BadInput", "Grid", "Model", "NoAnswer", "RbviError", "Table", "check",
-           "new", "offline", "solve", "verify"]
+__all__ = ["Answer", "BadInput", "Gradient", "Grid", "Model", "NoAnswer", "RbviError", "Table",
+           "check", "new", "offline", "solve", "verify"]
 __version__ = LIBRARY.rbvi_version().decode()

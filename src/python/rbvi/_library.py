@@ -63,6 +63,7 @@ FUNCTIONS = {
     "solve": [c_void_p, DOUBLES, c_uint],
     "outputs": [c_void_p, DOUBLES],
     "errors": [c_void_p, DOUBLES, DOUBLES],
+    "gradients": [c_void_p, DOUBLES, POINTER(c_int)],
     "answer_of": [c_void_p, POINTER(Answer)],
     "solve_many": [c_void_p, DOUBLES, c_size_t, c_uint, c_uint, DOUBLES, DOUBLES, POINTER(c_int),
                    REASON, c_void_p],

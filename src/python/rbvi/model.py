@@ -61,6 +61,26 @@ class Answer:
         return "\n".join([f"at {self.mu}{where}: residual {self.residual:.1g}", *rows])
 
 
+class Gradient:
+    """Derivatives at one parameter: g["normal_force"]["radius"], NaN where an output has none;
+    g.kinked["radius"]: whether a node is about to touch, lift, stick or slip as radius changes, so
+    that derivatives are those of one side, or between both; g.answer, g.mu."""
+
+    def __init__(self, answer, values, kinked):
+        self.answer, self.mu = answer, answer.mu
+        self.values = {name: Values(zip(answer.mu, map(float, row)))
+                       for name, row in zip(answer.outputs, values)}
+        self.kinked = Values(zip(answer.mu, map(bool, kinked)))
+
+    def __getitem__(self, name):
+        return Values(self.values)[name]
+
+    def __repr__(self):
+        rows = [f"d {output:24} / d {name:12} {value:.10g}" for output, row in self.values.items()
+                for name, value in row.items() if value == value]
+        return "\n".join([f"at {self.mu}", *rows])
+
+
 class Table:
     """Answers of many parameters, in their order: t["normal_force"], t.parameters, t.residual,
     t.ok (which have an answer), t.status ("ok", or why there is none), t.frame() for pandas."""
@@ -114,6 +134,7 @@ class Model:
     m = Model("model.h5")           or an image of rbvi-online --pack
     a = m(radius=0.8)               an answer; parameters that are left out keep their values
     m.table({"radius": [...]})      many, on all cores
+    m.gradient(radius=0.8)          derivatives of the outputs by the parameters
     m.contact(radius=0.8)           pressure, gap, ... along the contact
     m.field(radius=0.8)             displacement and stresses of the bodies
     m.plot("normal_force", x="radius")
@@ -195,6 +216,15 @@ class Model:
         named = [Values(zip(self.outputs, map(float, one))) for one in (outputs, error, bound)]
         facts = library.asked(library.Answer, "answer_of", self._workspace)
         return Answer(dict(zip(self.parameters, map(float, mu))), *named, facts)
+
+    def gradient(self, *, extrapolate=False, **parameters):
+        """The derivatives of all outputs by all parameters, and the answer beside them."""
+        answer = self(extrapolate=extrapolate, **parameters)
+        values = np.empty((len(self.outputs), len(self.parameters)))
+        kinked = np.empty(len(self.parameters), dtype=np.intc)
+        call("gradients", self._workspace, doubles(values),
+             kinked.ctypes.data_as(ctypes.POINTER(c_int)))
+        return Gradient(answer, values, kinked)
 
     def _rows(self, parameters):
         """rows x parameters, from an array, a dict or a DataFrame."""
