@@ -260,8 +260,8 @@ rbvi_status rbvi_errors(rbvi_workspace *workspace, double *expected, double *bou
 }
 
 rbvi_status rbvi_gradients(rbvi_workspace *workspace, double *values, int *kinked) {
-  return with_query(
-      workspace, [&](SharedQuery &query) { query.gradients(&there(values, "values"), kinked); });
+  return with_query(workspace,
+                    [&](SharedQuery &query) { query.gradients(&there(values, "values"), kinked); });
 }
 
 rbvi_status rbvi_answer_of(rbvi_workspace *workspace, rbvi_answer *answer) {

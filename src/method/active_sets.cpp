@@ -1,6 +1,6 @@
 #include "rbvi/method/active_sets.hpp"
 
-#include "order.hpp"
+#include "friction_laws.hpp"
 #include "pivoting.hpp"
 #include "rbvi/core/error.hpp"
 
@@ -12,27 +12,26 @@ using namespace friction;
 
 constexpr double while_sets_change = 1e-6; ///< accuracy of the systems
 
-/// The system of these sets, its rows those of NodeLaws.
-SetSystem system_of(const Laws &laws, const Order &order, const ActiveSets &sets, Index rows) {
+SetSystem system_of(const NodeLaws &laws, const ActiveSets &sets) {
   const std::vector<Unknown> list = unknowns(laws, sets);
   std::vector<Eigen::Triplet<double>> t, r;
   SetSystem system;
   for (std::size_t k = 0; k < list.size(); ++k) {
     const auto column = static_cast<int>(k);
-    const auto row = static_cast<int>(order.row(list[k].first));
+    const auto row = static_cast<int>(list[k].first);
     r.emplace_back(row, column, 1);
     t.emplace_back(row, column, 1);
     if (list[k].slope == 0) continue;
-    const auto tangent = static_cast<int>(order.row(laws.tangent(list[k].node)));
+    const auto tangent = static_cast<int>(laws.tangent[list[k].node]);
     t.emplace_back(tangent, column, list[k].slope * sets.direction(0, list[k].node));
     system.symmetric = false;
   }
   const auto columns = static_cast<Index>(list.size());
-  system.t.resize(rows, columns);
-  system.r.resize(rows, columns);
+  system.t.resize(laws.rows, columns);
+  system.r.resize(laws.rows, columns);
   system.t.setFromTriplets(t.begin(), t.end());
   system.r.setFromTriplets(r.begin(), r.end());
-  system.fixed = order.outwards(fixed_part(laws, sets));
+  system.fixed = fixed_part(laws, sets);
   return system;
 }
 
@@ -40,24 +39,22 @@ class Iteration {
 public:
   Iteration(const SetSolver &solve, const Vector &diagonal, const NodeLaws &laws,
             const FrictionOptions &options, const LargestOverRanks &largest)
-      : solve_(solve), order_(laws), laws_(laws_of(laws)), rows_(laws.rows),
-        diagonal_(order_.inwards(diagonal)), options_(options), largest_(largest) {}
+      : solve_(solve), laws_(laws), diagonal_(diagonal), options_(options), largest_(largest) {}
 
   FrictionResult run(const Vector &start, bool by_rule) {
-    const Vector from = order_.inwards(start);
-    const double steepest = largest(laws_.steepest());
-    return by_rule && steepest > 0 ? continued(from, Laws::steps_to(steepest)) : iterate(from);
+    const double steepest = largest(friction::steepest(laws_));
+    return by_rule && steepest > 0 ? continued(start, steps_to(steepest)) : iterate(start);
   }
 
 private:
   /// Along growing coefficients from none, as friction_answer by its rule.
   FrictionResult continued(Vector from, int steps) {
-    const Laws all = laws_;
+    const NodeLaws all = laws_;
     for (int k = 0; k < steps; ++k) {
-      laws_ = all.with_slopes(static_cast<double>(k) / steps);
+      laws_ = with_slopes(all, static_cast<double>(k) / steps);
       const FrictionResult found = iterate(from);
       if (!found.converged) break;
-      from = order_.inwards(found.start);
+      from = found.start;
     }
     laws_ = all;
     return iterate(from);
@@ -65,7 +62,7 @@ private:
 
   FrictionResult iterate(const Vector &from) {
     keys_.clear();
-    ActiveSets sets(laws_.nodes, laws_.dim);
+    ActiveSets sets(laws_);
     if (from.size() > 0) sets = predicted_sets(laws_, from);
     pivoting::Policy<Index, double> policy(/*patience=*/20);
     double accuracy = std::max(while_sets_change, options_.tolerance);
@@ -88,8 +85,8 @@ private:
   }
 
   State solved(const ActiveSets &sets, double accuracy) const {
-    const SetSolution found = solve_(system_of(laws_, order_, sets, rows_), accuracy);
-    return {order_.inwards(found.x), order_.inwards(found.w), order_.inwards(found.terms)};
+    const SetSolution found = solve_(system_of(laws_, sets), accuracy);
+    return {found.x, found.w, found.terms};
   }
 
   double largest(double value) const { return largest(Vector(Vector::Constant(1, value)))[0]; }
@@ -124,19 +121,16 @@ private:
     result.residual = residual;
     result.converged = true;
     result.reason = "no violation left";
-    result.x = laws_.feasible(point.x);
+    result.x = admissible(laws_, point.x);
     describe(result, laws_, sets);
-    result.start = order_.outwards(smooth_start(diagonal_, laws_, point));
-    result.x = order_.outwards(result.x);
-    result.w = order_.outwards(point.w);
+    result.start = smooth_start(diagonal_, laws_, point);
+    result.w = point.w;
     return result;
   }
 
   const SetSolver &solve_;
-  Order order_;
-  Laws laws_;
-  Index rows_;
-  Vector diagonal_;
+  NodeLaws laws_;
+  const Vector &diagonal_;
   const FrictionOptions &options_;
   const LargestOverRanks &largest_;
   std::vector<std::string> keys_; ///< of the sets so far

@@ -1,14 +1,13 @@
 #include "rbvi/method/several_answers.hpp"
 
 #include "friction_convex.hpp"
+#include "friction_laws.hpp"
 #include "friction_normal.hpp"
-#include "order.hpp"
 #include "pivoting.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -21,9 +20,9 @@ namespace friction {
 
 /// What problems that differ in q alone hand on.
 struct Kept {
-  std::set<std::string> known;  ///< keys of active sets on the way to answers to the last q
-  std::optional<System> system; ///< in the plane, the last one of the laws themselves
-  std::string key;              ///< of its sets
+  std::set<std::string> known;    ///< keys of active sets on the way to answers to the last q
+  std::optional<System> system;   ///< in the plane, the last one of the laws themselves
+  std::string key;                ///< of its sets
   std::optional<ActiveSets> sets; ///< of the last answer
 };
 
@@ -49,18 +48,18 @@ void check(const Vector &q, const NodeLaws &laws, const Vector &start) {
 class Solver {
 public:
   /// It ends at sets that are known; those that it comes to are added.
-  Solver(LazyColumns &h, const Vector &q, const Laws &laws, const FrictionOptions &options,
+  Solver(LazyColumns &h, const Vector &q, const NodeLaws &laws, const FrictionOptions &options,
          Kept &kept)
-      : h_(h), q_(q), laws_(laws), options_(options), kept_(kept), best_sets_(laws.nodes, laws.dim),
+      : h_(h), q_(q), laws_(laws), options_(options), kept_(kept), best_sets_(laws),
         systems_left_(options.max_iterations) {}
 
   /// `searches`: for another answer, where Newton's method goes straight to it.
   FrictionAnswer run(const Vector &start, bool by_rule, bool searches) {
     Outcome outcome;
-    if (by_rule && laws_.follow_pressure()) {
+    if (by_rule && bounds_follow_pressure(laws_)) {
       outcome = continued_from_no_friction(start);
     } else if (start.size() > 0) {
-      best_.x = laws_.feasible(start);
+      best_.x = admissible(laws_, start);
       result_.residual = std::numeric_limits<double>::infinity();
       State point;
       outcome = newton_from(laws_, sets_from(start), point);
@@ -69,14 +68,15 @@ public:
       State point = evaluate(h_, q_, Vector::Zero(q_.size()));
       outcome = newton(laws_, point);
     }
-    const bool settles = laws_.jump();
+    const bool settles = jump(laws_);
     if (outcome == Outcome::cycles && !searches) {
-      State point = evaluate(h_, q_, laws_.feasible(best_.x));
+      State point = evaluate(h_, q_, admissible(laws_, best_.x));
       outcome = settles ? settle_contact(laws_, point) : backup(laws_, point);
     }
     if (settles && (outcome == Outcome::cycles || outcome == Outcome::known)) {
       const bool from_rest = !searches || start.size() == 0;
-      State point = evaluate(h_, q_, from_rest ? Vector::Zero(q_.size()) : laws_.feasible(start));
+      State point =
+          evaluate(h_, q_, from_rest ? Vector::Zero(q_.size()) : admissible(laws_, start));
       outcome = settle_contact(laws_, point);
     }
     if (outcome == Outcome::cycles && searches) outcome = Outcome::known;
@@ -93,18 +93,19 @@ private:
   /// last point that is reached.
   Outcome continued_from_no_friction(const Vector &guess) {
     constexpr int halvings = 10; // of thresholds, from where all that touches sticks
-    const LcpResult normal = normal_contact(h_, q_, laws_.nodes, guess, options_);
+    const LcpResult normal = normal_contact(h_, q_, laws_, guess, options_);
     systems_left_ -= normal.iterations;
     Vector x = Vector::Zero(q_.size());
-    if (normal.x.size() == laws_.nodes) x.head(laws_.nodes) = normal.x;
+    if (normal.x.size() == laws_.nodes()) x(laws_.normal) = normal.x;
     prepare(laws_, x);
     State point = evaluate(h_, q_, std::move(x));
-    const bool comes_down = laws_.steepest() == 0;
-    const int steps = comes_down ? halvings : Laws::steps_to(laws_.steepest());
+    const double slope = steepest(laws_);
+    const bool comes_down = slope == 0;
+    const int steps = comes_down ? halvings : steps_to(slope);
     for (int k = 1; k < steps; ++k) {
       State next = point;
-      const Laws part = comes_down ? laws_.with_thresholds(std::ldexp(1.0, steps - k))
-                                   : laws_.with_slopes(static_cast<double>(k) / steps);
+      const NodeLaws part = comes_down ? with_thresholds(laws_, std::ldexp(1.0, steps - k))
+                                       : with_slopes(laws_, static_cast<double>(k) / steps);
       if ((comes_down ? settle_contact(part, next) : newton(part, next)) != Outcome::converged)
         break;
       point = std::move(next);
@@ -123,14 +124,14 @@ private:
   }
 
   /// The columns of the support of x, of nodes that touch, and of thresholds that hold everywhere.
-  void prepare(const Laws &laws, const Vector &x) {
+  void prepare(const NodeLaws &laws, const Vector &x) {
     ActiveSets sets = contact_sets(laws, x);
-    for (Index i = 0; i < laws.nodes; ++i)
-      if (laws.at_node(i).carries_traction(sets.is_active(i))) sets.tangent[i] = Tangent::stick;
+    for (Index i = 0; i < laws.nodes(); ++i)
+      if (laws.friction_at(i).carries_traction(sets.is_active(i))) sets.tangent[i] = Tangent::stick;
     h_.require(sets.support(laws));
   }
 
-  Outcome newton(const Laws &laws, State &point, int patience = usual_patience) {
+  Outcome newton(const NodeLaws &laws, State &point, int patience = usual_patience) {
     const ActiveSets sets = contact_sets(laws, point.x);
     Verdict verdict = judge(h_.diagonal(), laws, point, sets, options_.tolerance);
     keep(laws, point, sets, verdict);
@@ -139,13 +140,13 @@ private:
 
   /// Newton from these sets until the laws hold or the policy gives up. In three dimensions the
   /// directions of slip vary continuously: there the sets alone do not tell that a step returns.
-  Outcome newton_from(const Laws &laws, ActiveSets sets, State &point,
+  Outcome newton_from(const NodeLaws &laws, ActiveSets sets, State &point,
                       int patience = usual_patience) {
     pivoting::Policy<std::string, double> policy(patience);
     const bool own = &laws == &laws_;
     for (;;) {
       std::string key;
-      if (laws.dim == 2) {
+      if (laws.tangents == 1) {
         key = sets.key();
         if (own && kept_.known.contains(key)) return Outcome::known;
         if (own) visited_.insert(key);
@@ -158,11 +159,11 @@ private:
       const auto solve = [&](int refinements) {
         return system.step(h_, q_, laws, refinements, point);
       };
-      const Solved solved = solve(laws.dim == 2 ? 0 : 1);
+      const Solved solved = solve(laws.tangents == 1 ? 0 : 1);
       if (solved == Solved::indefinite) return Outcome::indefinite;
       if (solved == Solved::singular) return Outcome::cycles;
       Verdict verdict = judge(h_.diagonal(), laws, point, sets, options_.tolerance);
-      if (laws.dim == 2 && !verdict.changed) { // it may be the last one
+      if (laws.tangents == 1 && !verdict.changed) { // it may be the last one
         solve(1);
         verdict = judge(h_.diagonal(), laws, point, sets, options_.tolerance);
       }
@@ -174,7 +175,7 @@ private:
   }
 
   /// `key`: of the sets, in the plane.
-  const System &system_of(const Laws &laws, const ActiveSets &sets, std::string key) {
+  const System &system_of(const NodeLaws &laws, const ActiveSets &sets, std::string key) {
     if (&laws != &laws_ || key.empty()) return other_.emplace(h_, laws, sets);
     if (!kept_.system || kept_.key != key) {
       kept_.system.emplace(h_, laws, sets);
@@ -188,22 +189,23 @@ private:
   bool settled(const Verdict &verdict, double least) const {
     if (verdict.changed) return false;
     if (verdict.residual <= options_.tolerance) return true;
-    return verdict.residual <= round_off && (laws_.dim == 2 || verdict.residual >= 0.5 * least);
+    return verdict.residual <= round_off &&
+           (laws_.tangents == 1 || verdict.residual >= 0.5 * least);
   }
 
   /// The fixed point of the bounds, frozen in turn, with shorter steps where it turns back; and
   /// Newton whenever they settle. `point` is feasible.
-  Outcome backup(const Laws &laws, State &point) {
+  Outcome backup(const NodeLaws &laws, State &point) {
     double near = 0.5, part = 1;
     Vector before;
-    Vector held = laws.bounds(point.x);
+    Vector held = bounds_of(laws, point.x);
     while (systems_left_ > 0 && result_.backup_steps < options_.max_iterations) {
       ++result_.backup_steps;
-      if (!solve_frozen(laws.frozen(held), 1e-2 * near, point)) return Outcome::indefinite;
-      const Vector bounds = laws.bounds(point.x), change = bounds - held;
+      if (!solve_frozen(frozen(laws, held), 1e-2 * near, point)) return Outcome::indefinite;
+      const Vector bounds = bounds_of(laws, point.x), change = bounds - held;
       if (change.cwiseAbs().maxCoeff() <= near * bounds.maxCoeff()) {
         near *= 0.1;
-        State trial = evaluate(h_, q_, laws.feasible(point.x));
+        State trial = evaluate(h_, q_, admissible(laws, point.x));
         const Outcome outcome = newton(laws, trial, /*patience=*/2);
         if (outcome == Outcome::converged) point = std::move(trial);
         if (outcome != Outcome::cycles) return outcome;
@@ -212,20 +214,20 @@ private:
       part = turns ? std::max(0.1, 0.5 * part) : std::min(1.0, 2 * part);
       before = change;
       held += part * change;
-      point = evaluate(h_, q_, laws.frozen(held).feasible(std::move(point.x)));
+      point = evaluate(h_, q_, admissible(frozen(laws, held), std::move(point.x)));
     }
     return Outcome::limit;
   }
 
   /// Of thresholds that act in contact alone: the nodes that touch tell them, and laws without a
   /// jump are left, whose answer tells the nodes that touch, until they stay or come back.
-  Outcome settle_contact(const Laws &laws, State &point) {
-    std::vector<std::vector<char>> seen{laws.jumped(point.x)};
+  Outcome settle_contact(const NodeLaws &laws, State &point) {
+    std::vector<std::vector<char>> seen{jumped(laws, point.x)};
     while (systems_left_ > 0) {
       ++result_.backup_steps;
-      const Outcome outcome = settle_held(laws.without_jump(seen.back()), point);
+      const Outcome outcome = settle_held(without_jump(laws, seen.back()), point);
       if (outcome != Outcome::converged) return outcome;
-      const std::vector<char> touching = laws.jumped(point.x);
+      const std::vector<char> touching = jumped(laws, point.x);
       undecided_ = std::inner_product(touching.begin(), touching.end(), seen.back().begin(), 0L,
                                       std::plus(), std::not_equal_to());
       if (undecided_ == 0) return &laws == &laws_ ? newton(laws, point) : Outcome::converged;
@@ -236,23 +238,24 @@ private:
   }
 
   /// Of laws without a jump; a convex problem where none has a slope.
-  Outcome settle_held(const Laws &laws, State &point) {
-    point = evaluate(h_, q_, laws.feasible(std::move(point.x)));
-    if (!laws.follow_pressure())
+  Outcome settle_held(const NodeLaws &laws, State &point) {
+    point = evaluate(h_, q_, admissible(laws, std::move(point.x)));
+    if (!bounds_follow_pressure(laws))
       return solve_frozen(laws, options_.tolerance, point) ? Outcome::converged
                                                            : Outcome::indefinite;
     const Outcome outcome = newton(laws, point);
     if (outcome != Outcome::cycles) return outcome;
-    point = evaluate(h_, q_, laws.feasible(std::move(point.x)));
+    point = evaluate(h_, q_, admissible(laws, std::move(point.x)));
     return backup(laws, point);
   }
 
-  bool solve_frozen(const Laws &frozen, double tolerance, State &point) {
-    prepare(frozen, point.x);
-    return minimise(h_, q_, frozen, std::max(tolerance, round_off), systems_left_, point);
+  bool solve_frozen(const NodeLaws &held, double tolerance, State &point) {
+    prepare(held, point.x);
+    return minimise(h_, q_, held, std::max(tolerance, round_off), systems_left_, point);
   }
 
-  void keep(const Laws &laws, const State &point, const ActiveSets &sets, const Verdict &verdict) {
+  void keep(const NodeLaws &laws, const State &point, const ActiveSets &sets,
+            const Verdict &verdict) {
     if (&laws != &laws_) return;
     if (best_.x.size() > 0 && verdict.changed && verdict.residual >= result_.residual) return;
     best_ = point;
@@ -265,8 +268,8 @@ private:
     result.iterations = options_.max_iterations - systems_left_;
     result.columns = h_.count();
     result.converged = outcome == Outcome::converged;
-    result.has_others = result.converged && best_.negative && laws_.dim == 2 && !laws_.jump();
-    best_.x = laws_.feasible(std::move(best_.x));
+    result.has_others = result.converged && best_.negative && laws_.tangents == 1 && !jump(laws_);
+    best_.x = admissible(laws_, std::move(best_.x));
     if (!result.converged || kept_.key != best_sets_.key()) kept_.system.reset();
     kept_.sets = best_sets_;
     if (!result.converged) {
@@ -303,7 +306,7 @@ private:
 
   LazyColumns &h_;
   const Vector &q_;
-  const Laws &laws_;
+  const NodeLaws &laws_;
   const FrictionOptions &options_;
   Kept &kept_;
   std::optional<System> other_;   ///< the last one of other laws
@@ -319,25 +322,17 @@ private:
 
 struct FrictionSolver::Parts {
   Parts(ColumnSource source, const NodeLaws &of)
-      : given(of), order(given), laws(laws_of(given)), columns(std::move(source)),
-        ordered(order.inwards(columns)), h(ordered, order.size()) {
-    rbvi::check(given);
+      : laws(of), columns(std::move(source)), h(columns, laws.rows) {
+    rbvi::check(laws);
   }
   FrictionAnswer run(const Vector &start, bool rule, bool searches) {
-    check(q, given, start);
-    const Vector right = order.inwards(q), from = order.inwards(start);
-    FrictionAnswer result = given.friction()
-                                ? Solver(h, right, laws, options, kept).run(from, rule, searches)
-                                : FrictionAnswer{without_friction(h, right, laws, from, options)};
-    for (Vector *part : {&result.x, &result.w, &result.start})
-      *part = order.outwards(*part);
-    return result;
+    check(q, laws, start);
+    if (laws.friction()) return Solver(h, q, laws, options, kept).run(start, rule, searches);
+    return {without_friction(h, q, laws, start, options)};
   }
 
-  const NodeLaws given;
-  const Order order;
-  const Laws laws;
-  const ColumnSource columns, ordered;
+  const NodeLaws laws;
+  const ColumnSource columns;
   LazyColumns h;
   Vector q; ///< of the last answer
   FrictionOptions options;
@@ -367,9 +362,9 @@ FrictionAnswer FrictionSolver::answer(const Vector &q, const Vector &start, bool
   parts_->last.reset();
   FrictionAnswer answer = parts_->run(start, by_rule, false);
   if (!answer.converged) return answer;
-  const Vector x = parts_->order.inwards(answer.x);
-  parts_->last = {x, parts_->order.inwards(answer.start),
-                  parts_->given.friction() ? *parts_->kept.sets : contact_sets(parts_->laws, x)};
+  const NodeLaws &laws = parts_->laws;
+  parts_->last = {answer.x, answer.start,
+                  laws.friction() ? *parts_->kept.sets : contact_sets(laws, answer.x)};
   return answer;
 }
 
@@ -377,14 +372,12 @@ NearAnswer FrictionSolver::near(const Vector &left, const NodeLaws &laws) const 
   if (!parts_->last) throw failure("friction: there is no answer to go on from");
   Parts::Answered &last = *parts_->last;
   const LazyColumns &h = parts_->h;
-  const Order &order = parts_->order;
-  const Laws other = laws_of(laws);
   if (!last.tangent) last.tangent.emplace(h, parts_->laws, last.sets);
-  const State point = last.tangent->near(h, last.x, parts_->laws, order.inwards(left), other);
+  State point = last.tangent->near(h, last.x, parts_->laws, left, laws);
   if (!point.x.allFinite()) throw failure("friction: what touches does not tell its tractions");
-  const Vector start = smooth_start(h.diagonal(), other, point);
-  return {order.outwards(point.x), order.outwards(point.w), order.outwards(start),
-          predicted_sets(other, start).key() == predicted_sets(parts_->laws, last.start).key()};
+  const Vector start = smooth_start(h.diagonal(), laws, point);
+  return {std::move(point.x), std::move(point.w), start,
+          predicted_sets(laws, start).key() == predicted_sets(parts_->laws, last.start).key()};
 }
 
 FrictionAnswer FrictionSolver::another(const Vector &start, bool by_rule) {
@@ -393,30 +386,15 @@ FrictionAnswer FrictionSolver::another(const Vector &start, bool by_rule) {
 
 Matrix FrictionSolver::change(const Matrix &of_q) const {
   const std::optional<System> &system = parts_->kept.system;
-  if (!system) return {};
-  Matrix result(of_q.rows(), of_q.cols());
-  for (Index k = 0; k < of_q.cols(); ++k)
-    result.col(k) = parts_->order.outwards(
-        system->change(parts_->laws, parts_->order.inwards(Vector(of_q.col(k)))));
-  return result;
+  return system ? system->change(parts_->laws, of_q) : Matrix();
 }
 
 const NodeLaws &FrictionSolver::laws() const {
-  return parts_->given;
+  return parts_->laws;
 }
 
 bool FrictionSolver::by_rule() const {
   return parts_->by_rule;
-}
-
-FrictionAnswer friction_answer(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,
-                               const Vector &start, bool by_rule, const FrictionOptions &options) {
-  return FrictionSolver(columns, laws).answer(q, start, by_rule, options);
-}
-
-FrictionResult solve_friction(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,
-                              const Vector &start, const FrictionOptions &options) {
-  return friction_answer(columns, q, laws, start, false, options);
 }
 
 } // namespace rbvi

@@ -1,6 +1,6 @@
 #include "friction_convex.hpp"
 
-#include "order.hpp"
+#include "friction_laws.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,16 +13,16 @@ namespace rbvi::friction {
 namespace {
 
 /// Every node in turn goes to its best place along its normal, then down its tangential gradient.
-void sweep(const LazyColumns &h, const Laws &frozen, State &point) {
-  const Index count = frozen.dim - 1;
-  for (Index i = 0; i < frozen.nodes; ++i) {
-    if (h.has(i)) {
-      const double change = std::max(0.0, point.x[i] - point.w[i] / h.diagonal()[i]) - point.x[i];
-      point.x[i] += change;
-      if (change != 0) point.w += change * h.column(i);
+void sweep(const LazyColumns &h, const NodeLaws &frozen, State &point) {
+  const Index count = frozen.tangents;
+  for (Index i = 0; i < frozen.nodes(); ++i) {
+    const Index n = frozen.normal[i], t = frozen.tangent[i];
+    if (h.has(n)) {
+      const double change = std::max(0.0, point.x[n] - point.w[n] / h.diagonal()[n]) - point.x[n];
+      point.x[n] += change;
+      if (change != 0) point.w += change * h.column(n);
     }
-    const Index t = frozen.tangent(i);
-    const double bound = frozen.bound(i, 0);
+    const double bound = frozen.friction_at(i).value(0);
     if (bound == 0 || !h.has(t)) continue;
     double curvature = 0;
     for (Index k = 0; k < count; ++k)
@@ -38,16 +38,17 @@ void sweep(const LazyColumns &h, const Laws &frozen, State &point) {
 }
 
 /// Held are the entries at a bound that the gradient presses on; all others are free.
-ActiveSets held_sets(const Vector &diagonal, const Laws &frozen, const State &point) {
+ActiveSets held_sets(const Vector &diagonal, const NodeLaws &frozen, const State &point) {
   constexpr double round_off = 1e-12;
-  ActiveSets sets(frozen.nodes, frozen.dim);
-  const Index count = frozen.dim - 1;
-  for (Index i = 0; i < frozen.nodes; ++i) {
-    sets.active[i] = point.x[i] > 0 || point.w[i] < 0;
-    const double bound = frozen.bound(i, 0);
+  ActiveSets sets(frozen);
+  const Index count = frozen.tangents;
+  for (Index i = 0; i < frozen.nodes(); ++i) {
+    const Index n = frozen.normal[i], t = frozen.tangent[i];
+    sets.active[i] = point.x[n] > 0 || point.w[n] < 0;
+    const double bound = frozen.friction_at(i).value(0);
     if (bound == 0) continue;
-    const auto x = point.x.segment(frozen.tangent(i), count);
-    const bool presses = x.dot(point.w.segment(frozen.tangent(i), count)) <= 0;
+    const auto x = point.x.segment(t, count);
+    const bool presses = x.dot(point.w.segment(t, count)) <= 0;
     const bool held = x.norm() >= (1 - round_off) * bound && presses;
     sets.tangent[i] = held ? Tangent::slip : Tangent::stick;
     if (held) sets.direction.col(i) = x.normalized();
@@ -62,14 +63,15 @@ struct Stop {
   Index first, count;
 };
 
-std::vector<Stop> stops_along(const Laws &frozen, const Vector &x, const Vector &d) {
+std::vector<Stop> stops_along(const NodeLaws &frozen, const Vector &x, const Vector &d) {
   std::vector<Stop> stops;
-  const Index count = frozen.dim - 1;
-  for (Index i = 0; i < frozen.nodes; ++i) {
-    if (d[i] < 0) stops.push_back({-x[i] / d[i], i, 1});
-    const Index t = frozen.tangent(i);
+  const Index count = frozen.tangents;
+  for (Index i = 0; i < frozen.nodes(); ++i) {
+    const Index n = frozen.normal[i], t = frozen.tangent[i];
+    if (d[n] < 0) stops.push_back({-x[n] / d[n], n, 1});
+    if (t < 0) continue;
     const auto from = x.segment(t, count), way = d.segment(t, count);
-    const double a = way.squaredNorm(), b = from.dot(way), bound = frozen.bound(i, 0);
+    const double a = way.squaredNorm(), b = from.dot(way), bound = frozen.bound[i].value(0);
     if (a == 0) continue;
     const double left = std::max(0.0, bound * bound - from.squaredNorm());
     stops.push_back({(std::sqrt(b * b + a * left) - b) / a, t, count});
@@ -80,7 +82,7 @@ std::vector<Stop> stops_along(const Laws &frozen, const Vector &x, const Vector 
 
 /// From the point towards `aim`, every entry (or disk) held from where it meets its bound, to where
 /// the function is least along that way. Whether it ends before anything is held.
-bool follow(const LazyColumns &h, const Laws &frozen, const Vector &aim, State &point) {
+bool follow(const LazyColumns &h, const NodeLaws &frozen, const Vector &aim, State &point) {
   Vector d = aim - point.x, hd = Vector::Zero(d.size());
   const std::vector<Stop> stops = stops_along(frozen, point.x, d);
   for (Index j = 0; j < d.size(); ++j)
@@ -104,7 +106,7 @@ bool follow(const LazyColumns &h, const Laws &frozen, const Vector &aim, State &
 
 } // namespace
 
-bool minimise(LazyColumns &h, const Vector &q, const Laws &frozen, double tolerance, int &steps,
+bool minimise(LazyColumns &h, const Vector &q, const NodeLaws &frozen, double tolerance, int &steps,
               State &point) {
   ActiveSets sets = contact_sets(frozen, point.x);
   for (;;) {
@@ -117,7 +119,7 @@ bool minimise(LazyColumns &h, const Vector &q, const Laws &frozen, double tolera
     State aim;
     if (System(h, frozen, sets).step(h, q, frozen, 1, aim) != Solved::yes) return false;
     if (!follow(h, frozen, aim.x, point)) sweep(h, frozen, point);
-    point = evaluate(h, q, frozen.feasible(std::move(point.x)));
+    point = evaluate(h, q, admissible(frozen, std::move(point.x)));
   }
 }
 

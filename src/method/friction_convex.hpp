@@ -13,7 +13,7 @@ namespace rbvi::friction {
 /// Lowers the function from point.x (feasible, with its columns) until the laws hold to
 /// `tolerance`, relative, or `steps` linear systems are used up; takes those off `steps`. False if
 /// a system is not positive definite.
-bool minimise(LazyColumns &h, const Vector &q, const Laws &frozen, double tolerance, int &steps,
+bool minimise(LazyColumns &h, const Vector &q, const NodeLaws &frozen, double tolerance, int &steps,
               State &point);
 
 } // namespace rbvi::friction

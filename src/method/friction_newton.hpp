@@ -14,35 +14,6 @@
 
 namespace rbvi::friction {
 
-/// The laws of all nodes, |x_tau,i| <= s_i(x_n,i). The entries of x are x_n of all nodes, then
-/// x_tau of all nodes.
-struct Laws {
-  Index nodes = 0;
-  int dim = 2;
-  std::vector<FrictionBound> of; ///< the bound of each node
-
-  Index tangent(Index i) const { return nodes + i * (dim - 1); }
-  const FrictionBound &at_node(Index i) const { return of[i]; }
-  double bound(Index i, double normal) const { return of[i].value(normal); }
-  Vector bounds(const Vector &x) const;
-  bool jump() const;            ///< whether a bound jumps where contact begins
-  bool follow_pressure() const; ///< whether a bound does
-  double steepest() const;      ///< the largest slope of a bound
-  /// The nearest x that keeps the signs, and then the bounds.
-  Vector feasible(Vector x) const;
-  /// Steps in which slopes grow from zero, by at most 0.25 each, to `steepest` of them all.
-  static int steps_to(double steepest);
-  /// The laws with slopes, or thresholds, times a factor.
-  Laws with_slopes(double part) const;
-  Laws with_thresholds(double factor) const;
-  /// The nodes whose bounds have jumped.
-  std::vector<char> jumped(const Vector &x) const;
-  /// The laws with the thresholds of those nodes alone, whatever touches.
-  Laws without_jump(const std::vector<char> &jumped) const;
-  /// The laws with these bounds, which do not follow the pressure.
-  Laws frozen(const Vector &bounds) const;
-};
-
 /// The kind of x_tau at a node: zero, free, or of a given direction.
 enum class Tangent : char { none, stick, slip };
 
@@ -51,19 +22,19 @@ enum class Tangent : char { none, stick, slip };
 struct ActiveSets {
   std::vector<char> active;
   std::vector<Tangent> tangent;
-  Matrix direction;        ///< e of the nodes that slip, dim - 1 x nodes
+  Matrix direction;        ///< e of the nodes that slip, tangents x nodes
   std::vector<char> piece; ///< the piece of its law that each of them is on
   Vector curvature;        ///< kappa of those nodes; negative: no turn
 
-  ActiveSets(Index nodes, int dim);
+  explicit ActiveSets(const NodeLaws &laws);
   bool is_active(Index i) const { return active[i] != 0; }
   Tangent tangent_at(Index i) const { return tangent[i]; }
   /// The piece of the law that a slipping node is on.
-  FrictionBound::Piece piece_of(const Laws &laws, Index i) const {
-    return laws.at_node(i).piece(piece[i]);
+  FrictionBound::Piece piece_of(const NodeLaws &laws, Index i) const {
+    return laws.friction_at(i).piece(piece[i]);
   }
   /// The entries of x that need not be zero.
-  std::vector<Index> support(const Laws &laws) const;
+  std::vector<Index> support(const NodeLaws &laws) const;
   /// A text that is equal for sets with the same linear system, in two dimensions.
   std::string key() const;
 };
@@ -89,16 +60,18 @@ double largest_scaled(const Vector &diagonal, const Vector &x);
 /// not known: of x_j it is then only known whether it is zero. `sets`: of the step that gave the
 /// point (they decide where the difference is below tolerance). `largest`: largest_scaled, of all
 /// nodes.
-Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, const ActiveSets &sets,
-              double tolerance, double largest);
-Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, const ActiveSets &sets,
-              double tolerance);
+Verdict judge(const Vector &diagonal, const NodeLaws &laws, const State &point,
+              const ActiveSets &sets, double tolerance, double largest);
+Verdict judge(const Vector &diagonal, const NodeLaws &laws, const State &point,
+              const ActiveSets &sets, double tolerance);
+/// H_jj of the tangential row of a node, of two rows their mean.
+double tangential_diagonal(const Vector &diagonal, const NodeLaws &laws, Index node);
 /// The sets to judge a point by that no step gave.
-ActiveSets contact_sets(const Laws &laws, const Vector &x);
+ActiveSets contact_sets(const NodeLaws &laws, const Vector &x);
 /// The sets that y = x - w / H_jj tells, but for their curvature.
-ActiveSets predicted_sets(const Laws &laws, const Vector &y);
+ActiveSets predicted_sets(const NodeLaws &laws, const Vector &y);
 /// The curvature of sets that y predicts.
-void set_curvature(const Vector &diagonal, const Laws &laws, const Vector &y, ActiveSets &sets);
+void set_curvature(const Vector &diagonal, const NodeLaws &laws, const Vector &y, ActiveSets &sets);
 
 /// An unknown of the linear system, and its row: a combination of at most two entries.
 struct Unknown {
@@ -108,11 +81,11 @@ struct Unknown {
   double slope = 0;     ///< x_tau grows by this times e with the normal unknown
   double curvature = 0; ///< on the diagonal
 };
-std::vector<Unknown> unknowns(const Laws &laws, const ActiveSets &sets);
+std::vector<Unknown> unknowns(const NodeLaws &laws, const ActiveSets &sets);
 /// The part of x that no unknown changes: what bounds of slipping nodes have at x_n = 0.
-Vector fixed_part(const Laws &laws, const ActiveSets &sets);
+Vector fixed_part(const NodeLaws &laws, const ActiveSets &sets);
 /// x of the unknowns u, beside its fixed part `x`; slipping nodes on their circle.
-Vector expand(const Laws &laws, const ActiveSets &sets, const std::vector<Unknown> &list,
+Vector expand(const NodeLaws &laws, const ActiveSets &sets, const std::vector<Unknown> &list,
               const Vector &u, Vector x);
 
 /// With friction a singular matrix need not be a fault of H.
@@ -122,18 +95,18 @@ enum class Solved { yes, singular, indefinite };
 class System {
 public:
   /// The system of `sets`. `h` has the columns of their support.
-  System(const LazyColumns &h, const Laws &laws, ActiveSets sets);
+  System(const LazyColumns &h, const NodeLaws &laws, ActiveSets sets);
   /// The point that solves it; `point` is unchanged where none does.
-  Solved step(const LazyColumns &h, const Vector &q, const Laws &laws, int refinements,
+  Solved step(const LazyColumns &h, const Vector &q, const NodeLaws &laws, int refinements,
               State &point) const;
   /// Changes of x in the plane by those of q (columns), while the sets stay.
-  Matrix change(const Laws &laws, const Matrix &of_q) const;
+  Matrix change(const NodeLaws &laws, const Matrix &of_q) const;
   /// As FrictionSolver::near, of the point x that the sets gave by `laws`.
-  State near(const LazyColumns &h, const Vector &x, const Laws &laws, const Vector &left,
-             const Laws &other_laws) const;
+  State near(const LazyColumns &h, const Vector &x, const NodeLaws &laws, const Vector &left,
+             const NodeLaws &other_laws) const;
 
 private:
-  void assemble(const LazyColumns &h, const Laws &laws);
+  void assemble(const LazyColumns &h, const NodeLaws &laws);
   /// -(a y[first] + b y[second]) of each row, in its unit.
   Vector right_side(const Vector &y) const;
   /// The unknowns for a right side.

@@ -1,6 +1,6 @@
 #include "friction_normal.hpp"
 
-#include "order.hpp"
+#include "friction_laws.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,41 +19,42 @@ double normal_residual(const Vector &x, const Vector &w, const Vector &terms) {
 
 } // namespace
 
-LcpResult normal_contact(LazyColumns &h, const Vector &q, Index nodes, const Vector &start,
+LcpResult normal_contact(LazyColumns &h, const Vector &q, const NodeLaws &laws, const Vector &start,
                          const FrictionOptions &options) {
-  const ColumnSource normals = [&](const std::vector<Index> &which) {
+  const ColumnSource normals = [&](std::vector<Index> which) {
+    for (Index &node : which)
+      node = laws.normal[node];
     h.require(which);
-    Matrix result(nodes, static_cast<Index>(which.size()));
-    for (std::size_t k = 0; k < which.size(); ++k)
-      result.col(static_cast<Index>(k)) = h.column(which[k]).head(nodes);
+    Matrix result(laws.nodes(), std::ssize(which));
+    for (Index k = 0; k < result.cols(); ++k)
+      result.col(k) = h.column(which[k])(laws.normal);
     return result;
   };
   std::vector<Index> guess;
-  for (Index i = 0; i < nodes && start.size() > 0; ++i)
-    if (start[i] > 0) guess.push_back(i);
-  return solve_lcp(normals, q.head(nodes), guess,
+  for (Index i = 0; i < laws.nodes() && start.size() > 0; ++i)
+    if (start[laws.normal[i]] > 0) guess.push_back(i);
+  return solve_lcp(normals, q(laws.normal), guess,
                    {.tolerance = options.tolerance, .max_iterations = options.max_iterations});
 }
 
-FrictionResult without_friction(LazyColumns &h, const Vector &q, const Laws &laws,
+FrictionResult without_friction(LazyColumns &h, const Vector &q, const NodeLaws &laws,
                                 const Vector &start, const FrictionOptions &options) {
-  const Index nodes = laws.nodes;
-  LcpResult normal = normal_contact(h, q, nodes, start, options);
+  LcpResult normal = normal_contact(h, q, laws, start, options);
   FrictionResult result;
   result.iterations = normal.iterations;
   result.columns = normal.columns;
   result.backup_steps = normal.backup_steps;
   result.converged = normal.converged;
   result.reason = std::move(normal.reason);
-  if (normal.x.size() != nodes) return result; // H is not positive definite
+  if (normal.x.size() != laws.nodes()) return result; // H is not positive definite
   Vector x = Vector::Zero(q.size());
-  x.head(nodes) = normal.x;
+  x(laws.normal) = normal.x;
   State point = evaluate(h, q, std::move(x));
-  result.residual = normal_residual(normal.x, point.w, point.terms);
+  result.residual = normal_residual(normal.x, point.w(laws.normal), point.terms(laws.normal));
   result.start = smooth_start(h.diagonal(), laws, point);
   result.x = std::move(point.x);
   result.w = std::move(point.w);
-  describe(result, laws, ActiveSets(nodes, laws.dim));
+  describe(result, laws, ActiveSets(laws));
   return result;
 }
 

@@ -6,12 +6,12 @@
 
 namespace rbvi::friction {
 
-/// On the first `nodes` entries. `start`: of x, or empty.
-LcpResult normal_contact(LazyColumns &h, const Vector &q, Index nodes, const Vector &start,
+/// Of the rows x_n, node by node. `start`: of x, or empty.
+LcpResult normal_contact(LazyColumns &h, const Vector &q, const NodeLaws &laws, const Vector &start,
                          const FrictionOptions &options);
 
 /// The answer where every bound is zero.
-FrictionResult without_friction(LazyColumns &h, const Vector &q, const Laws &laws,
+FrictionResult without_friction(LazyColumns &h, const Vector &q, const NodeLaws &laws,
                                 const Vector &start, const FrictionOptions &options);
 
 } // namespace rbvi::friction

@@ -53,4 +53,14 @@ double distance_seen(FrictionSolver &solver, const FrictionAnswer &found, bool l
   return found.has_others ? std::max(distance, least_distance) : distance;
 }
 
+FrictionAnswer friction_answer(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,
+                               const Vector &start, bool by_rule, const FrictionOptions &options) {
+  return FrictionSolver(columns, laws).answer(q, start, by_rule, options);
+}
+
+FrictionResult solve_friction(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,
+                              const Vector &start, const FrictionOptions &options) {
+  return friction_answer(columns, q, laws, start, false, options);
+}
+
 } // namespace rbvi

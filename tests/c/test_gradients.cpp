@@ -32,8 +32,8 @@ protected:
     std::call_once(once, add_published_queries);
   }
   void SetUp() override {
-    model_ = read_model(std::filesystem::path(RBVI_MODELS) / GetParam().name / "model.h5",
-                        Registry{});
+    model_ =
+        read_model(std::filesystem::path(RBVI_MODELS) / GetParam().name / "model.h5", Registry{});
     solver_.emplace(model_);
     queries_ = parse_set(model_.scene.parameters, "random:25:7");
     std::ranges::copy(parse_set(model_.scene.parameters, "corners"), std::back_inserter(queries_));
@@ -85,7 +85,8 @@ TEST_P(Gradients, AreTheLimitOfDifferences) {
   };
   std::vector<Compared> all;
   Vector largest = Vector::Zero(columns);
-  for (const Mu &mu : queries_) try {
+  for (const Mu &mu : queries_)
+    try {
       Compared at{Matrix(columns, parameters), Matrix(columns, parameters),
                   Matrix(columns, parameters)};
       const ReducedAnswer answer = solver_->solve(mu);
@@ -165,16 +166,15 @@ TEST_P(Gradients, AreTheSameInC) {
   rbvi_close(handle);
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, Gradients,
-                         testing::Values(Model{"membrane", usual}, Model{"membrane_mcpg", usual},
-                                         Model{"two_disks", usual}, Model{"two_disks_cone", usual},
-                                         Model{"disk_condensed", usual}, Model{"disk_none", usual},
-                                         Model{"disk_collocated", on_functions},
-                                         Model{"disk_large", usual}, Model{"disk_large_cone", usual},
-                                         Model{"nitsche_empirical", usual},
-                                         Model{"nitsche_interpolated", usual},
-                                         Model{"roller", usual}),
-                         [](const auto &of) { return std::string(of.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Models, Gradients,
+    testing::Values(Model{"membrane", usual}, Model{"membrane_mcpg", usual},
+                    Model{"two_disks", usual}, Model{"two_disks_cone", usual},
+                    Model{"disk_condensed", usual}, Model{"disk_none", usual},
+                    Model{"disk_collocated", on_functions}, Model{"disk_large", usual},
+                    Model{"disk_large_cone", usual}, Model{"nitsche_empirical", usual},
+                    Model{"nitsche_interpolated", usual}, Model{"roller", usual}),
+    [](const auto &of) { return std::string(of.param.name); });
 
 } // namespace
 } // namespace rbvi

@@ -298,4 +298,90 @@ TEST(Friction, RefusesBadInput) {
       EXPECT_EQ(status(source, p.q, 2, bound), Status::failed);
 }
 
+namespace {
+
+/// Normal and tangential rows of each node side by side, nodes from the last to the first.
+NodeLaws reversed_laws(Index nodes, int dim, const FrictionBound &bound) {
+  NodeLaws laws = uniform_laws(nodes, dim, bound);
+  for (Index i = 0; i < nodes; ++i) {
+    laws.normal[i] = (nodes - 1 - i) * dim;
+    if (dim > 1) laws.tangent[i] = laws.normal[i] + 1;
+  }
+  return laws;
+}
+
+/// Row j of the result is row `from[j]`.
+std::vector<Index> rows_of(const NodeLaws &laws, int dim) {
+  std::vector<Index> from(laws.rows);
+  for (Index i = 0; i < laws.nodes(); ++i) {
+    from[laws.normal[i]] = i;
+    for (int k = 0; k + 1 < dim; ++k)
+      from[laws.tangent[i] + k] = laws.nodes() + i * (dim - 1) + k;
+  }
+  return from;
+}
+
+} // namespace
+
+TEST(Friction, NearAnAnswerItsActiveSetsTellTheNext) {
+  for (const int dim : {1, 2, 3})
+    for (const FrictionBound &bound : all_bounds) {
+      if (bound.jumps()) continue; // held thresholds are tested by the answers of the models
+      const FrictionProblem p = punch(41, dim, 12.3, 0.08);
+      const NodeLaws laws = reversed_laws(p.nodes(), dim, bound);
+      const std::vector<Index> rows = rows_of(laws, dim);
+      Random random(5);
+      const Matrix other = random_positive(random, p.q.size(), 1);
+      const Vector load = random.vector(p.q.size());
+      const auto problem = [&](double e) {
+        const double h = e * p.h.diagonal().maxCoeff() / other.diagonal().maxCoeff();
+        return FrictionProblem{Matrix((p.h + h * other)(rows, rows)),
+                               Vector((p.q + e * p.q.norm() / load.norm() * load)(rows)), dim};
+      };
+      const auto law = [&](double e) {
+        return reversed_laws(p.nodes(), dim,
+                             {bound.coefficient * (1 + e), bound.threshold * (1 - e)});
+      };
+      const FrictionProblem here = problem(0);
+      std::set<Index> given;
+      FrictionSolver solver(once(here.h, given), laws);
+      const FrictionAnswer answer = solver.answer(here.q, {}, false);
+      ASSERT_TRUE(answer.converged) << answer.reason;
+      double before = 0;
+      for (const double e : {1e-5, 5e-6}) {
+        const FrictionProblem there = problem(e);
+        std::set<Index> unused;
+        const FrictionAnswer exact =
+            friction_answer(once(there.h, unused), there.q, law(e), answer.start, false);
+        ASSERT_TRUE(exact.converged) << exact.reason;
+        ASSERT_EQ(exact.states, answer.states) << "the test needs a smaller step";
+        const NearAnswer near = solver.near(there.h * answer.x + there.q, law(e));
+        EXPECT_TRUE(near.same_states);
+        const double error = (near.x - exact.x).norm() / exact.x.norm();
+        const double moved = (answer.x - exact.x).norm() / exact.x.norm();
+        EXPECT_LT(error, 0.01 * moved) << "dim " << dim << ", coefficient " << bound.coefficient;
+        if (before > 1e-12) EXPECT_NEAR(error / before, 0.25, 0.1); // it is of second order
+        before = error;
+      }
+      FrictionSolver unsolved(once(here.h, given), laws);
+      EXPECT_THROW(unsolved.near(here.q, laws), Error);
+    }
+}
+
+TEST(Friction, NearAnAnswerItTellsThatANodeTouchesOrSlips) {
+  const Matrix h = Matrix::Identity(2, 2);
+  const NodeLaws laws = uniform_laws(1, 2, {0.3});
+  const auto stays = [&](const Vector &q, const Vector &change) {
+    std::set<Index> given;
+    FrictionSolver solver(once(h, given), laws);
+    const FrictionAnswer answer = solver.answer(q, {}, false);
+    return solver.near(h * answer.x + q + change, laws).same_states;
+  };
+  const Vector small{{-2e-6, 2e-6}};
+  EXPECT_TRUE(stays(Vector{{1e-5, 0}}, small));       // apart
+  EXPECT_FALSE(stays(Vector{{1e-6, 0}}, small));      // touches
+  EXPECT_TRUE(stays(Vector{{-1, 0.29999}}, small));   // sticks
+  EXPECT_FALSE(stays(Vector{{-1, 0.299999}}, small)); // slips
+}
+
 } // namespace rbvi::friction_solver_test

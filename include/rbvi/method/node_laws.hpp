@@ -82,6 +82,11 @@ struct NodeLaws {
   Index nodes() const { return static_cast<Index>(normal.size()); }
   bool has_tangent(Index node) const { return tangent[node] >= 0; }
   bool has_tangents() const; ///< some node
+  /// Of x_tau at a node; of one without a tangent none.
+  const FrictionBound &friction_at(Index node) const {
+    static const FrictionBound none;
+    return has_tangent(node) ? bound[node] : none;
+  }
   /// Whether some node can carry a tangential traction.
   bool friction() const;
 };

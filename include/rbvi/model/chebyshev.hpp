@@ -8,9 +8,9 @@
 
 namespace rbvi {
 
-/// The coordinate of a parameter in which A^-1 varies smoothly, and back: that which a factor of the
-/// scene's a gives it, else its logarithm where its range is wide and positive (A^-1 of a modulus
-/// is singular at 0 and below), else itself.
+/// The coordinate of a parameter in which A^-1 varies smoothly, and back: that which a factor of
+/// the scene's a gives it, else its logarithm where its range is wide and positive (A^-1 of a
+/// modulus is singular at 0 and below), else itself.
 double coordinate_at(const Scene &scene, int parameter, double value);
 double value_back(const Scene &scene, int parameter, double coordinate);
 

@@ -17,8 +17,8 @@ FreeMotions free_motions_at(const BodyAtMu &body, const Matrix &motions, Matrix 
 double energy_of_springs(const ReducedModel &model, const Scene &scene,
                          const ReducedAnswer &answer);
 
-/// Whether queries start from rest, by the rule of friction_answer: with friction forces may balance
-/// in several answers, and this is the one of the full model.
+/// Whether queries start from rest, by the rule of friction_answer: with friction forces may
+/// balance in several answers, and this is the one of the full model.
 bool rests_at_start(const ReducedModel &model, const Scene &scene);
 
 /// As method.solve(), with the springs relaxed. Throws failure where forces do not balance, or

@@ -15,9 +15,9 @@ struct OutputGradient {
                             ///< derivatives are those of one side, or between both
 };
 
-/// `answer`: the last one of solver.solve(mu). Columns that count, or that are checks of the answer,
-/// have no derivative, nor has an output without a value. Throws failure where an answer nearby
-/// cannot be told.
+/// `answer`: the last one of solver.solve(mu). Columns that count, or that are checks of the
+/// answer, have no derivative, nor has an output without a value. Throws failure where an answer
+/// nearby cannot be told.
 OutputGradient gradient_of(OnlineSolver &solver, const Mu &mu, const ReducedAnswer &answer,
                            const std::vector<OutputColumn> &columns);
 

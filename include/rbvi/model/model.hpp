@@ -271,9 +271,10 @@ std::filesystem::path fields_file(const std::filesystem::path &model);
 /// not for a model without fields. Throws failure (check_model, H5Writer::commit).
 void write_model(const ReducedModel &model, const std::filesystem::path &path);
 
-/// Of model.h5, or of an image (model/model_image.hpp). Throws bad_input (see H5Reader), also for a program's scene that the registry does not have, or
-/// has in another version, for parameters that are not those of the scene, and where the fields are
-/// asked for and are not there or another model's. `with_fields` false leaves them out.
+/// Of model.h5, or of an image (model/model_image.hpp). Throws bad_input (see H5Reader), also for a
+/// program's scene that the registry does not have, or has in another version, for parameters that
+/// are not those of the scene, and where the fields are asked for and are not there or another
+/// model's. `with_fields` false leaves them out.
 ReducedModel read_model(const std::filesystem::path &path, const Registry &registry,
                         bool with_fields = true);
 
