@@ -16,8 +16,10 @@
 
 #include <stddef.h>
 
-#if defined(_WIN32)
-#define RBVI_API
+#if defined(_WIN32) && defined(RBVI_BUILD)
+#define RBVI_API __declspec(dllexport)
+#elif defined(_WIN32)
+#define RBVI_API __declspec(dllimport)
 #else
 #define RBVI_API __attribute__((visibility("default")))
 #endif

@@ -9,8 +9,19 @@ std::string system_reason() {
   return errno != 0 ? std::string(": ") + std::strerror(errno) : "";
 }
 
+namespace {
+
+bool is_full() {
+#ifdef EDQUOT // not on every system
+  if (errno == EDQUOT) return true;
+#endif
+  return errno == ENOSPC || errno == EFBIG;
+}
+
+} // namespace
+
 Error cannot_write(const std::string &what) {
-  const bool full = errno == ENOSPC || errno == EDQUOT || errno == EFBIG;
+  const bool full = is_full();
   return failure("cannot write " + what + system_reason() +
                  (full ? "; make room and start the same command again" : ""));
 }

@@ -6,11 +6,8 @@
 #include "rbvi/io/vtu.hpp"
 
 #include <algorithm>
-#include <cctype>
 
 namespace rbvi {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -86,15 +83,6 @@ Grid interface_grid(const State &state, const Contact &contact, std::size_t numb
   return grid;
 }
 
-/// Letters of other alphabets stay.
-std::string file_safe(std::string name) {
-  for (char &letter : name) {
-    const auto byte = static_cast<unsigned char>(letter);
-    if (byte < 0x80 && std::isalnum(byte) == 0 && letter != '-') letter = '_';
-  }
-  return name;
-}
-
 } // namespace
 
 void name_parameters(const Scene &scene, const FullMu &all_parameters, Grid &grid) {
@@ -115,45 +103,14 @@ Grid body_grid(const Scene &scene, const FullMu &all, const ReducedModel &model,
   return bodies({scene, all, model, u, none, displacement(scene, all, model.fields.points, u)});
 }
 
-fs::path file_beside(const fs::path &path, const std::string &suffix) {
-  return path.parent_path() / (path.stem().string() + suffix + path.extension().string());
-}
-
-std::vector<fs::path> contact_files(const fs::path &path, const Scene &scene,
-                                    const std::string &suffix) {
-  std::vector<fs::path> files;
-  for (std::size_t i = 0; i < scene.contacts.size(); ++i) {
-    const std::string &own = scene.contacts[i].name;
-    std::string name = suffix;
-    if (scene.contacts.size() > 1)
-      name.append("_").append(own.empty() ? std::to_string(i + 1) : file_safe(own));
-    while (std::ranges::find(files, file_beside(path, name)) != files.end()) // "a b" and "a_b"
-      name += "_";
-    files.push_back(file_beside(path, name));
-  }
-  return files;
-}
-
-std::vector<fs::path> write_vtu(const fs::path &path, const Scene &scene, const FullMu &all,
-                                const ReducedModel &model, const Vector &u, const Vector &lambda) {
+std::vector<Grid> solution_grids(const Scene &scene, const FullMu &all, const ReducedModel &model,
+                                 const Vector &u, const Vector &lambda) {
   const State state{scene, all, model, u, lambda, displacement(scene, all, model.fields.points, u)};
-  const Grid whole = bodies(state);
   const Contact contact = contact_of(model, scene);
-  std::vector<Grid> interfaces;
+  std::vector<Grid> grids{bodies(state)};
   for (std::size_t i = 0; i < contact.interfaces.size(); ++i)
-    interfaces.push_back(interface_grid(state, contact, i));
-  write_vtu(path, whole, vtu_format(whole));
-  std::vector<fs::path> written{path};
-  const std::vector<fs::path> files = contact_files(path, scene);
-  for (std::size_t i = 0; i < interfaces.size(); ++i) {
-    if (interfaces[i].cells.empty()) {
-      fs::remove(files[i]);
-      continue;
-    }
-    write_vtu(files[i], interfaces[i], vtu_format(interfaces[i]));
-    written.push_back(files[i]);
-  }
-  return written;
+    grids.push_back(interface_grid(state, contact, i));
+  return grids;
 }
 
 } // namespace rbvi

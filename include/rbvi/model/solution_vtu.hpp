@@ -21,6 +21,11 @@ std::vector<std::filesystem::path> contact_files(const std::filesystem::path &pa
 Grid body_grid(const Scene &scene, const FullMu &all_parameters, const ReducedModel &model,
                const Vector &u);
 
+/// The bodies, then each interface, as write_vtu has them; of an interface that faces nothing
+/// without cells. Throws likewise.
+std::vector<Grid> solution_grids(const Scene &scene, const FullMu &all_parameters,
+                                 const ReducedModel &model, const Vector &u, const Vector &lambda);
+
 /// One solution, full or reduced: `u` at all dofs (the motion of the scene is added), `lambda` at
 /// the dual dofs, on the mesh of `model` mapped by h(mu) (its fields and interfaces alone are
 /// read). The displacement goes to `path`, with the number of the body on each cell
