@@ -156,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(Models, CInterface,
                          testing::Values("membrane", "membrane_mcpg", "two_disks", "two_disks_cone",
                                          "disk_condensed", "disk_collocated", "disk_large",
                                          "disk_large_cone", "nitsche_empirical",
-                                         "nitsche_interpolated", "roller"),
+                                         "nitsche_interpolated", "free_block", "roller"),
                          [](const auto &of) { return std::string(of.param); });
 
 /// What each wrong call returns, and that it says why in one line.

@@ -40,6 +40,7 @@ RUNS = {
     "nitsche_empirical": NITSCHE,
     "nitsche_interpolated": [*NITSCHE, "-nitsche_quadrature", "interpolated",
                              "-nitsche_eim_validation", "random:2:2"],
+    "free_block": ["-case", CASES.parent / "tests/cases/free_block/case.yaml"],
     "roller": ["-case", CASES / "roller/case.yaml", "-train", "grid:3,3"],
     "roller_nitsche": ["-case", CASES / "roller/case.yaml", "-train", "grid:3,3", "-arc_edges", "24",
                        "-formulation", "nitsche"],

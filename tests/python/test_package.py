@@ -90,6 +90,23 @@ class Answers(unittest.TestCase):
         with self.assertRaisesRegex(rbvi.BadInput, "nearest one is 'normal_force'"):
             of["normal_forse"]
 
+    def test_gradients_of_rbvi_online_have_the_same_digits(self):
+        middle = self.middle()
+        of = self.model.gradient(**middle)
+        program = [BIN / "rbvi-online", MODELS / "disk_condensed/model.h5", "--gradient"]
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder) / "out.csv"
+            subprocess.run([*program, "--mu", ",".join(map(repr, middle.values())), "--out", out,
+                            "--precision", "17"], check=True, capture_output=True)
+            with open(out, encoding="utf-8", newline="") as file:
+                row, = csv.DictReader(file)
+        told = {name: float(value) for name, value in row.items()
+                if name.startswith("d_") and name in {f"d_normal_force_d_{p}" for p in middle}}
+        self.assertEqual(told, {f"d_normal_force_d_{p}": of["normal_force"][p] for p in middle})
+        refused = subprocess.run(program, capture_output=True, text=True, check=False)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("--gradient needs --mu or --queries", refused.stderr)
+
     def test_the_trace_carries_the_force(self):
         answer = self.model(**self.middle())
         trace = self.model.contact(**self.middle())
