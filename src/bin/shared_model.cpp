@@ -4,7 +4,7 @@
 #include "rbvi/model/gradient.hpp"
 #include "rbvi/model/solution_vtu.hpp"
 #include "rbvi/model/training_samples.hpp"
-#include "rbvi/scene/tree.hpp"
+#include "rbvi/scene/stored_scene.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -21,15 +21,6 @@ const Registry &library() {
   return registry;
 }
 
-/// The outputs that a table of the model would have, but for the time that each answer took.
-std::vector<OutputColumn> columns_of_model(const ReducedModel &model) {
-  OnlineSolver solver(model);
-  std::vector<OutputColumn> columns = columns_of(
-      {example_outputs(model, [&](const Mu &mu) { return solver.outputs(mu, solver.solve(mu)); })});
-  std::erase_if(columns, [](const OutputColumn &column) { return column.name == "seconds"; });
-  return columns;
-}
-
 double of_output(const ErrorOfOutput &errors, const std::string &name) {
   const auto found = errors.find(name);
   return found == errors.end() ? unknown : found->second;
@@ -39,21 +30,17 @@ double of_output(const ErrorOfOutput &errors, const std::string &name) {
 
 SharedModel::SharedModel(std::vector<std::byte> image, std::string what)
     : image_(std::move(image)), what_(std::move(what)),
-      model_(model_in(image_, what_, library(), false)), columns_(columns_of_model(model_)) {
+      model_(model_in(image_, what_, library(), false)), columns_(columns_of_model(model_)),
+      says_(texts_of_parameters(model_.scene)) {
   for (std::size_t i = 0; i < model_.scene.contacts.size(); ++i)
     contacts_.push_back(rbvi::contact_name(model_.scene, i));
-  const CaseNode tree = tree_in(model_.scene.tree), nothing;
-  const auto entries = [&](const char *section) -> const std::vector<CaseNode::Entry> & {
-    const CaseNode *node = tree.find(section);
-    return node == nullptr ? nothing.entries : node->entries;
-  };
-  for (const auto &[name, node] : entries("parameters"))
-    if (const CaseNode *says = node.find("says")) says_[name] = says->value;
-  for (const auto &[name, node] : entries("require")) {
-    const CaseNode *that = node.find("that"), *says = node.find("says");
-    requirements_.push_back((that == nullptr ? name : that->value) +
-                            (says == nullptr ? "" : ": " + says->value));
-  }
+  const CaseNode tree = tree_in(model_.scene.tree);
+  if (const CaseNode *require = tree.find("require"))
+    for (const auto &[name, node] : require->entries) {
+      const CaseNode *that = node.find("that"), *says = node.find("says");
+      requirements_.push_back((that == nullptr ? name : that->value) +
+                              (says == nullptr ? "" : ": " + says->value));
+    }
   for (const OutputError &error : expected_errors(model_).outputs) {
     mean_errors_[error.name] = error.mean;
     largest_errors_[error.name] = error.max;

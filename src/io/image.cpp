@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <optional>
@@ -182,6 +183,18 @@ std::string ImageWriter::image(int schema) const {
 bool is_image(Bytes start) {
   return start.size() >= image_magic.size() &&
          std::memcmp(start.data(), image_magic.data(), image_magic.size()) == 0;
+}
+
+std::string guid_of(Bytes start) {
+  if (!is_image(start) || start.size() < header_size)
+    throw bad_input("this is no image of a model");
+  std::array<std::uint64_t, 2> facts{}; // length and checksum
+  std::memcpy(facts.data(), start.data() + header_size - sizeof facts, sizeof facts);
+  char text[40];
+  const auto part = [&](int i, int shift) { return static_cast<unsigned>(facts[i] >> shift); };
+  std::snprintf(text, sizeof text, "{%08x-%04x-%04x-%04x-%04x%08x}", part(0, 0),
+                part(0, 32) & 0xffff, part(0, 48), part(1, 48), part(1, 32) & 0xffff, part(1, 0));
+  return text;
 }
 
 std::vector<std::byte> bytes_of_file(const std::filesystem::path &path, std::size_t most) {

@@ -6,6 +6,7 @@
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/io/system_error.hpp"
 #include "rbvi/io/write_atomically.hpp"
+#include "rbvi/model/fmu.hpp"
 #include "rbvi/model/gradient.hpp"
 #include "rbvi/model/model_image.hpp"
 #include "rbvi/model/print.hpp"
@@ -52,8 +53,13 @@ void check_combination(const OnlineArguments &given) {
   if (given.model.empty()) throw bad_input("no model is named; --help shows how");
   const bool one = !given.mu.empty(), many = !given.queries.empty();
   if (one && many) throw bad_input("--mu and --queries exclude each other");
-  if (!given.pack.empty() && (one || many))
-    throw bad_input("--pack takes no --mu and no --queries");
+  for (const auto &[name, file] : {std::pair{"--pack", given.pack}, std::pair{"--fmu", given.fmu}})
+    if (!file.empty() && (one || many))
+      throw bad_input(std::string(name) + " takes no --mu and no --queries");
+  if (!given.pack.empty() && !given.fmu.empty())
+    throw bad_input("--pack and --fmu exclude each other");
+  if (!given.fmu.empty() && !given.fmu.ends_with(".fmu"))
+    throw bad_input("--fmu is " + given.fmu + ": the name of a unit ends with .fmu");
   if (given.gradient && !one && !many) throw bad_input("--gradient needs --mu or --queries");
   if (given.warm && !many) throw bad_input("--warm needs --queries");
   if (!given.vtu.empty() && !one) throw bad_input("--vtu needs --mu");
@@ -86,6 +92,9 @@ const std::vector<OnlineOption> &online_options() {
       {"pack", "FILE",
        "the model as one image for librbvi (include/rbvi.h), with its fields where their file is",
        &Arguments::pack},
+      {"fmu", "FILE",
+       "the model as a unit of co-simulation, FILE.fmu (FMI 2.0), which simulators take",
+       &Arguments::fmu},
       {"full", "", "reconstruct the field: adds min_u", nullptr, &Arguments::full},
       {"gradient", "",
        "derivatives of the outputs by the parameters, in the units of both: d_OUTPUT_d_PARAMETER",
@@ -232,6 +241,11 @@ void run(const OnlineArguments &arguments, const Registry &registry, std::ostrea
     check_overwriting({"--pack", arguments.pack}, {{"the model", arguments.model}});
     write_atomically(arguments.pack, image_of(model));
     print_written(out, {arguments.pack});
+    return;
+  }
+  if (!arguments.fmu.empty()) {
+    write_atomically(arguments.fmu, fmu_of(model, library_of_units()));
+    print_written(out, {arguments.fmu});
     return;
   }
   if (arguments.mu.empty() && arguments.queries.empty()) {

@@ -3,6 +3,7 @@
 #include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/model/online.hpp"
 
 namespace rbvi {
 
@@ -53,6 +54,14 @@ Outputs example_outputs(const ReducedModel &model,
     }
   }
   return {};
+}
+
+std::vector<OutputColumn> columns_of_model(const ReducedModel &model) {
+  OnlineSolver solver(model);
+  std::vector<OutputColumn> columns = columns_of(
+      {example_outputs(model, [&](const Mu &mu) { return solver.outputs(mu, solver.solve(mu)); })});
+  std::erase_if(columns, [](const OutputColumn &column) { return column.name == "seconds"; });
+  return columns;
 }
 
 bool nearest_sample_failed(const ReducedModel &model, const Mu &free) {

@@ -155,6 +155,15 @@ Scene scene_in(const std::string &tree, const SceneOptions &options, const Regis
   return scene;
 }
 
+std::map<std::string, std::string> texts_of_parameters(const Scene &scene) {
+  std::map<std::string, std::string> texts;
+  const CaseNode tree = tree_in(scene.tree);
+  if (const CaseNode *parameters = tree.find("parameters"))
+    for (const auto &[name, node] : parameters->entries)
+      if (const CaseNode *says = node.find("says")) texts[name] = says->value;
+  return texts;
+}
+
 std::string scene_difference(const std::string &theirs, const std::string &mine,
                              Compared compared) {
   if (theirs == mine) return "";

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""installed_library.py BUILD SOURCE MODELS CMAKE: librbvi and the package of Python, installed.
+"""installed_library.py BUILD SOURCE MODELS CMAKE: librbvi, that of units and the package of Python, installed.
 
 Installs BUILD into a prefix of its own; compiles cases/from_c.c by pkg-config and by find_package in
 empty folders; its answer has the digits of rbvi-online's, also where the model is gone; the library
-shows rbvi.h alone and needs nothing beyond the C++ library; the package of Python finds it.
+shows rbvi.h alone and needs nothing beyond the C++ library, as that of units, which shows the functions
+of FMI alone and which rbvi-online finds; the package of Python finds librbvi.
 """
 
 import os
@@ -11,9 +12,16 @@ import re
 import subprocess
 import sys
 import tempfile
+import zipfile
 from pathlib import Path
 
 NEEDED = ("libstdc++.so", "libm.so", "libgcc_s.so", "libc.so", "ld-linux", "linux-vdso", "libpthread")
+FMI = {"fmi2" + name for name in """
+    GetTypesPlatform GetVersion SetDebugLogging Instantiate FreeInstance SetupExperiment EnterInitializationMode
+    ExitInitializationMode Terminate Reset GetReal GetInteger GetBoolean GetString SetReal SetInteger SetBoolean
+    SetString GetFMUstate SetFMUstate FreeFMUstate SerializedFMUstateSize SerializeFMUstate DeSerializeFMUstate
+    GetDirectionalDerivative SetRealInputDerivatives GetRealOutputDerivatives DoStep CancelStep GetStatus
+    GetRealStatus GetIntegerStatus GetBooleanStatus GetStringStatus""".split()}
 
 
 def run(*command, **how):
@@ -29,11 +37,14 @@ def numbers(text):
             if re.match(r"-?[\d.]+(e[-+]\d+)?$|nan$", value)}
 
 
-def check_library(library):
-    for symbol in run("nm", "-D", "--defined-only", library).split("\n"):
-        name = symbol.split()[-1] if symbol else "rbvi_"
-        if not name.startswith("rbvi_"):
+def check_library(library, shown):
+    """All that a library shows begins so, and of others it needs what is versioned: that of C and C++."""
+    for symbol in run("nm", "-D", library).splitlines():
+        kind, name = symbol.split()[-2:]
+        if kind not in "Uvw" and not name.startswith(shown):
             sys.exit(f"{library.name} shows {name}")
+        if kind == "U" and "@" not in name:
+            sys.exit(f"{library.name} lacks {name}")
     for line in run("ldd", library).splitlines():
         if not any(name in line for name in NEEDED):
             sys.exit(f"{library.name} needs {line.strip()}")
@@ -45,7 +56,12 @@ def main(build, source, models, cmake):
         prefix = work / "prefix"
         run(cmake, "--install", build, "--prefix", prefix)
         library = next(prefix.rglob("librbvi.so.1"))
-        check_library(library)
+        check_library(library, "rbvi_")
+        units = next(prefix.rglob("librbvi_fmu.so"))
+        check_library(units, "fmi2")
+        functions = set(re.findall(r"\bfmi2\w+", run("nm", "-D", "--defined-only", units)))
+        if functions != FMI:
+            sys.exit(f"{units.name} has not the functions of FMI alone: {sorted(functions ^ FMI)}")
         pkgconfig = next(prefix.rglob("rbvi.pc")).parent
         own = {**os.environ, "PKG_CONFIG_PATH": str(pkgconfig), "LD_LIBRARY_PATH": str(library.parent)}
         (work / "from_c.c").write_bytes((Path(source) / "cases/from_c.c").read_bytes())
@@ -56,6 +72,16 @@ def main(build, source, models, cmake):
             *flags, cwd=work)
         online = prefix / "bin/rbvi-online"
         run(online, Path(models) / "disk_condensed/model.h5", "--pack", work / "model.rbvi")
+        run(online, work / "model.rbvi", "--fmu", work / "model.fmu")
+        with zipfile.ZipFile(work / "model.fmu") as unit:
+            if not any(unit.read(name) == units.read_bytes() for name in unit.namelist()):
+                sys.exit(f"the unit has another library than {units.name}")
+        moved = units.rename(work / units.name)
+        refused = subprocess.run([online, work / "model.rbvi", "--fmu", work / "none.fmu"], text=True,
+                                 capture_output=True, check=False)
+        moved.rename(units)
+        if refused.returncode != 1 or "build the target rbvi_fmu\n" not in refused.stderr:
+            sys.exit(f"without {units.name}: {refused}")
         answer = numbers(run(work / "from_c", "model.rbvi", cwd=work, env=own))
         mu = ",".join(repr(answer[one]) for one in ("radius", "core_stiffness"))
         told = work / "told.csv"

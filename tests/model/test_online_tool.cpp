@@ -186,6 +186,10 @@ TEST_F(OnlineBinary, RefusesBadInputWhole) {
   EXPECT_TRUE(refused("model.h5 --full=yes --mu 0.2,0,0", "takes no value"));
   EXPECT_TRUE(refused("model.h5 --mu 0.2,0,0 --mu 0.2,0,0", "given twice"));
   EXPECT_TRUE(refused("model.h5 --mu 0.2,0,0 --queries a.csv", "exclude each other"));
+  EXPECT_TRUE(refused("model.h5 --pack a.rbvi --mu 0.2,0,0", "--pack takes no --mu"));
+  EXPECT_TRUE(refused("model.h5 --fmu a.fmu --queries a.csv", "--fmu takes no --mu"));
+  EXPECT_TRUE(refused("model.h5 --fmu a.fmu --pack a.rbvi", "exclude each other"));
+  EXPECT_TRUE(refused("model.h5 --fmu a.zip", "ends with .fmu"));
   EXPECT_TRUE(refused("model.h5 --vtu u.vtu", "needs --mu"));
   EXPECT_TRUE(refused("model.h5 --out out.csv", "needs --mu"));
   EXPECT_TRUE(refused("model.h5 --mu nan,0,0 --vtu u.vtu", "not finite"));

@@ -68,6 +68,10 @@ private:
 /// Whether bytes, or the first of them, are those of an image.
 bool is_image(Bytes start);
 
+/// By the length and the checksum of an image; `start`: its header or more of it. Throws bad_input
+/// where it is none.
+std::string guid_of(Bytes start);
+
 /// All bytes of a file, or the first `most`. Throws bad_input where it cannot be read.
 std::vector<std::byte> bytes_of_file(const std::filesystem::path &path,
                                      std::size_t most = std::numeric_limits<std::size_t>::max());

@@ -9,7 +9,7 @@
 namespace rbvi {
 
 struct OnlineArguments {
-  std::string model, mu, queries, out, vtu, pack, precision, method; ///< "" where not given
+  std::string model, mu, queries, out, vtu, pack, fmu, precision, method; ///< "" where not given
   bool extrapolate = false, decorrelated = false, full = false, gradient = false, warm = false,
        help = false, version = false;
   /// Of the outputs in tables.

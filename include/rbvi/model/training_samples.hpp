@@ -14,6 +14,9 @@ namespace rbvi {
 Outputs example_outputs(const ReducedModel &model,
                         const std::function<Outputs(const Mu &)> &answer);
 
+/// The outputs that a table of the model has, but for the time that each answer takes.
+std::vector<OutputColumn> columns_of_model(const ReducedModel &model);
+
 /// free parameters x samples, as ModelHistory::trained_mu; `rows`: number of free parameters.
 Matrix as_columns(const std::vector<Mu> &set, int rows);
 

@@ -6,6 +6,9 @@
 
 #include "rbvi/core/scene.hpp"
 
+#include <map>
+#include <string>
+
 namespace rbvi {
 
 /// The scene of a tree with these options: its case read again, or made by the program's entry.
@@ -17,6 +20,9 @@ Scene scene_in(const std::string &tree, const SceneOptions &options, const Regis
 /// coefficient of term `of` of a (-1: 1), with the first body a load of nothing. The tree keeps it,
 /// for the mesh alone tells such bodies.
 void add_held_body(Scene &scene, int of);
+
+/// What a case says of its parameters, by their names.
+std::map<std::string, std::string> texts_of_parameters(const Scene &scene);
 
 /// Whether outputs of the case's own count as well.
 enum class Compared { answers, answers_and_outputs };
