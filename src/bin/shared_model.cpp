@@ -1,6 +1,7 @@
 #include "shared_model.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/output_units.hpp"
 #include "rbvi/model/gradient.hpp"
 #include "rbvi/model/solution_vtu.hpp"
 #include "rbvi/model/training_samples.hpp"
@@ -32,6 +33,10 @@ SharedModel::SharedModel(std::vector<std::byte> image, std::string what)
     : image_(std::move(image)), what_(std::move(what)),
       model_(model_in(image_, what_, library(), false)), columns_(columns_of_model(model_)),
       says_(texts_of_parameters(model_.scene)) {
+  for (const OutputColumn &column : columns_) {
+    output_units_.push_back(unit_of(model_.scene, column));
+    output_says_.push_back(says_of(model_.scene, column));
+  }
   for (std::size_t i = 0; i < model_.scene.contacts.size(); ++i)
     contacts_.push_back(rbvi::contact_name(model_.scene, i));
   const CaseNode tree = tree_in(model_.scene.tree);
@@ -57,8 +62,8 @@ rbvi_parameter SharedModel::parameter(std::size_t i) const {
 rbvi_output SharedModel::output(std::size_t i) const {
   const OutputColumn &column = columns_.at(i);
   return {column.name.c_str(),
-          "",
-          column.says,
+          output_units_[i].c_str(),
+          output_says_[i].c_str(),
           static_cast<rbvi_output_kind>(column.kind),
           of_output(mean_errors_, column.name),
           of_output(largest_errors_, column.name)};

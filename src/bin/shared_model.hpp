@@ -35,6 +35,7 @@ private:
   const std::string what_;
   const ReducedModel model_; ///< without its fields
   std::vector<OutputColumn> columns_;
+  std::vector<std::string> output_units_, output_says_; ///< of each column
   std::vector<std::string> contacts_, requirements_;
   std::map<std::string, std::string> says_; ///< of parameters, by their names
   ErrorOfOutput mean_errors_, largest_errors_;

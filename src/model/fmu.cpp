@@ -1,6 +1,7 @@
 #include "rbvi/model/fmu.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/output_units.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/units.hpp"
 #include "rbvi/io/zip.hpp"
@@ -77,12 +78,13 @@ std::vector<std::string> variables_of(const ReducedModel &model) {
   const std::vector<OutputColumn> columns = columns_of_model(model);
   const ErrorOfOutput errors = errors_of_outputs(model);
   for (const OutputColumn &column : columns)
-    add(column.name, column.says, "output", "><Real");
+    add(column.name, says_of(model.scene, column), "output",
+        "><Real" + attribute("unit", unit_of(model.scene, column)));
   for (const OutputColumn &column : columns)
     if (errors.contains(column.name))
       add(column.name + "_error",
           "largest error of " + column.name + " over the validation set, absolute", "output",
-          "><Real");
+          "><Real" + attribute("unit", unit_of(model.scene, column)));
     else
       ++reference;
   add("residual", "of the reduced problem, relative", "output", "><Real");
@@ -117,6 +119,8 @@ std::string model_description(const ReducedModel &model, const std::string &guid
   const int inputs = model.scene.parameters.size();
   for (int i = 0; i < inputs; ++i)
     units.insert(model.scene.parameters.at(i).unit);
+  for (const OutputColumn &column : columns_of_model(model))
+    units.insert(unit_of(model.scene, column));
   units.erase("");
   std::string definitions, unknowns;
   for (const std::string &unit : units)

@@ -197,6 +197,7 @@ const std::vector<CaseKey> all_keys{
      "the force along this direction by which boundaries hold the body; of a membrane [1, 0]"},
     {"outputs.*", "spring", "a spring", "the force with which it pulls"},
     {"outputs.*", "where", "expression", "a condition: the part that counts"},
+    {"outputs.*", "says", "text", "what it is"},
     {"require.*", "that", "expression", "in parameters: it must hold", true},
     {"require.*", "says", "text", "what to tell where it does not", true},
     {"curves.*", "circle", "[x, y, radius]", "in the mesh", true, "m"},

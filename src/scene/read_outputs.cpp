@@ -1,5 +1,6 @@
-#include "reader.hpp"
+#include "dimensions.hpp"
 
+#include "rbvi/core/output_units.hpp"
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/core/text.hpp"
 
@@ -162,6 +163,20 @@ void put_spring(Reader &reader, const CaseNode &node, const Scene &scene, Output
   if (spring.preload) form.preload = coefficient(*spring.preload);
 }
 
+/// Nothing where it is not known. Of plane problems what is integrated is that of a unit of
+/// thickness.
+std::optional<Dimension> dimension_of_output(const Reader &reader, const CaseNode &node,
+                                             const Scene &scene, const OutputForm &form) {
+  if (!reader.units) return {};
+  if (form.kind == Kind::reaction || form.kind == Kind::spring) return size_of(scene, Size::force);
+  const bool whole = form.kind == Kind::integral || form.kind == Kind::measure;
+  std::optional<Dimension> dimension = Dimension{};
+  if (form.kind != Kind::measure) dimension = Dimensions(reader).of(entry(node, kind_of(node)));
+  if (dimension && whole)
+    (*dimension)[0] += scene.dim - (form.place == Place::region ? 0 : 1) + scene.axisymmetric;
+  return dimension;
+}
+
 OutputForm output_in(Reader &reader, const std::string &name, const CaseNode &node,
                      const Scene &scene) {
   check_name(name, scene);
@@ -180,6 +195,9 @@ OutputForm output_in(Reader &reader, const std::string &name, const CaseNode &no
                       "REGION' what its displacement gives");
     put_values(reader, node, entry(node, kind), scene, form);
   }
+  if (const CaseNode *says = node.find("says")) form.says = says->value;
+  if (const std::optional<Dimension> dimension = dimension_of_output(reader, node, scene, form))
+    form.unit = unit_in(*reader.units, *dimension);
   return form;
 }
 

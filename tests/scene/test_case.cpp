@@ -3,6 +3,7 @@
 #include "../contact/support_scenes.hpp"
 #include "block_case.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/output_units.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/scene/case.hpp"
 #include "tests/catalogue.hpp"
@@ -438,6 +439,50 @@ TEST(Case, TheCasesOfTheRepositoryAndTheirVariantsAreScenes) {
     EXPECT_FALSE(entry.summary.empty());
   }
   EXPECT_NO_THROW((void)make_scene(read_case(new_case(), "new.yaml"), {}));
+}
+
+TEST(Case, OutputsHaveUnitsWhereTheyAreKnown) {
+  const auto units = [](const std::string &physics,
+                        const std::map<std::string, std::string> &more) {
+    std::map<std::string, std::string> sections{
+        {"physics", physics},
+        {"materials", "{rubber: {at: all, E: 15 MPa, nu: 0.3}}"},
+        {"parameters", "{depth: {range: [0.01, 0.1], default: 0.05, unit: mm}}"},
+        {"outputs", "{pull: {integral: pressure, at: floor, says: what it carries}, "
+                    "lever: {integral: pressure * (x - 1), at: floor}, "
+                    "wide: {measure: pressure > 0, at: floor}, worst: {max: von_mises, in: all}, "
+                    "stored: {integral: strain_energy, in: all}, twice: {max: 2 * ux, in: all}}"}};
+    for (const auto &[name, text] : more)
+      sections[name] = text;
+    const Scene scene = scene_of(sections);
+    std::map<std::string, std::string> found;
+    for (const char *name : {"energy", "normal_force", "peak_pressure", "contact_measure",
+                             "iterations", "pull", "lever", "wide", "worst", "stored", "twice"})
+      found[name] = unit_of(scene, output_column(name));
+    EXPECT_EQ(says_of(scene, output_column("pull")), "what it carries");
+    EXPECT_EQ(says_of(scene, output_column("energy")), output_column("energy").says);
+    return found;
+  };
+  using Units = std::map<std::string, std::string>;
+  const std::pair<const std::string, std::string> millimetres{"units", "{length: mm, force: N}"};
+  EXPECT_EQ(units("plane_strain", {millimetres}), (Units{{"energy", "N"},
+                                                         {"normal_force", "N/mm"},
+                                                         {"peak_pressure", "MPa"},
+                                                         {"contact_measure", "mm"},
+                                                         {"iterations", ""},
+                                                         {"pull", "N/mm"},
+                                                         {"lever", "N"},
+                                                         {"wide", "mm"},
+                                                         {"worst", "MPa"},
+                                                         {"stored", "N"},
+                                                         {"twice", ""}})); // 2 may have any
+  const Units turned =
+      units("axisymmetric", {millimetres, {"imposed", "{top: {at: top, uy: -depth}}"}});
+  EXPECT_EQ(turned.at("energy"), "mm*N");
+  EXPECT_EQ(turned.at("normal_force"), "N");
+  EXPECT_EQ(turned.at("contact_measure"), "mm^2");
+  EXPECT_EQ(turned.at("stored"), "mm*N");
+  EXPECT_EQ(turned.at("pull"), "N");
 }
 
 } // namespace

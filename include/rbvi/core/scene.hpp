@@ -142,7 +142,7 @@ struct OutputForm {
     spring    ///< stiffness m(u) + preload, m the sum of some means
   };
   enum class Place { contact, boundary, region, point };
-  std::string name;
+  std::string name, unit{}, says{}; ///< unit: "" where it is not known
   Kind kind = Kind::integral;
   Place place = Place::contact;
   std::vector<std::string> at{}; ///< contacts, boundaries or regions; no region: the whole mesh

@@ -187,7 +187,7 @@ class Model:
         for one in self.outputs.values():
             error = f" (largest error {one.largest_error:.2g})" * (
                 one.largest_error == one.largest_error)
-            lines.append(f"  {one.name}: {one.says}{error}")
+            lines.append(f"  {one.name}{f' ({one.unit})' if one.unit else ''}: {one.says}{error}")
         return "\n".join([*lines, "", Model.__doc__])
 
     def __repr__(self):
