@@ -1,13 +1,17 @@
 """What a model answers: outputs along each parameter, stresses over the contacts."""
 
+import re
+
 import h5py
 import numpy as np
 
-from figure_tools import (BLUE, GREEN, GREY, ORANGE, Missing, contact_names, free_parameters,
-                          in_length, in_stress, plt, save, table, wider, with_unit)
-from panels import Curve, Lines, Triangles, save_panels
+from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, contact_names, free_parameters,
+                          in_length, in_stress, plt, save, table, text_rows, wider, with_unit)
+from panels import ROUND_OFF, Banded, Curve, Lines, Triangles, save_panels
 
 PLACES = {"middle of the box": BLUE, "least normal force": GREEN, "largest normal force": ORANGE}
+COLOURS = (BLUE, ORANGE, GREEN, PURPLE, GREY)
+SAME = 0.03  # two outputs that differ by less are drawn once
 MOST = 10  # outputs that are drawn: those of the case before the others
 STANDARD = ("normal_force", "tangential_force", "reaction", "peak_pressure", "contact_measure",
             "energy")
@@ -22,12 +26,6 @@ def drawn_outputs(data, parameters):
     return chosen[:MOST]
 
 
-def samples_of(run):
-    """The training samples; nothing where they are not there."""
-    path = run / "samples.csv"
-    return np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True)) if path.is_file() else None
-
-
 def contact_cells(run):
     """Triangles between the vertices of a contact region; nothing for contact along curves."""
     with h5py.File(run / "model.h5", "r") as model:
@@ -38,29 +36,59 @@ def contact_cells(run):
         return cells.reshape(-1, nodes)[:, :3]
 
 
-def outputs(run):
-    """Outputs along each free parameter through the middle of the box, and the training samples."""
+def output_panels(run):
+    """A panel for each output: over the one free parameter, or a line for each over its range; the band
+    of the largest error that was measured. And what to say: what lies on another one is left out."""
     data, parameters = table(run, "along.csv"), free_parameters(run)
     names = [name for name, _ in parameters]
-    shown, samples = drawn_outputs(data, names), samples_of(run)
-    if not shown:
+    chosen, words = drawn_outputs(data, names), []
+    if not chosen:
         raise Missing("along.csv has no outputs")
-    steps = len(data) // len(names)
-    figure, axes = plt.subplots(len(shown), len(names), sharex="col", sharey="row", squeeze=False,
-                                figsize=(1 + 2.3 * len(names), 0.6 + 1.6 * len(shown)))
-    for row, output in zip(axes, shown):
-        for k, ((name, unit), axis) in enumerate(zip(parameters, row)):
-            if samples is not None and output in samples.dtype.names:
-                axis.plot(samples[name], samples[output], ".", color="#bbbbbb", markersize=3)
+    if {"reaction", "normal_force"} <= set(chosen):
+        apart = np.nanmax(np.abs(data["reaction"] - data["normal_force"])) / np.nanmax(np.abs(data["normal_force"]))
+        if apart <= SAME:
+            chosen.remove("reaction")
+            words.append(f"reaction: within {100 * apart:.1g} % of the normal force")
+    for output in list(chosen):
+        if np.ptp(data[output]) <= ROUND_OFF * np.max(np.abs(data[output])):
+            chosen.remove(output)
+            words.append(f"{output.replace('_', ' ')}: {data[output][0]:.4g} everywhere")
+    path = run / "verify/outputs.csv"
+    facts = {re.sub(r"\W", "", row["output"].replace(" ", "_")): row  # as columns of tables are called
+             for row in (text_rows(path) if path.is_file() else [])}
+    steps, panels = len(data) // len(names), []
+    for output in chosen:
+        of, label = facts.get(output, {}), output.replace("_", " ")
+        lines = []
+        for k, (name, unit) in enumerate(parameters):
             line = data[k * steps:(k + 1) * steps]
-            axis.plot(line[name], line[output], color=BLUE)
-            if output == shown[-1]:
-                axis.set_xlabel(with_unit(name.replace("_", " "), unit))
-        row[0].set_ylabel(output.replace("_", " "))
-    figure.align_ylabels(axes[:, 0])
-    figure.suptitle("outputs along each parameter, the others at the middle of the box; grey: training "
-                    "samples", fontsize=9, color=GREY)
-    figure.tight_layout()
+            ends = with_unit(f"{name.replace('_', ' ')} {line[name][0]:.3g} to {line[name][-1]:.3g}", unit)
+            x = line[name] if len(names) == 1 else (line[name] - line[name][0]) / np.ptp(line[name])
+            lines.append(Curve(x, line[output], ends, COLOURS[k % len(COLOURS)]))
+        panels.append(Banded(label, f"{label} ({of['unit']})" if of.get("unit") else label,
+                             with_unit(names[0].replace("_", " "), parameters[0][1]) if len(names) == 1
+                             else "part of the range", lines, float(of.get("max") or 0)))
+    return panels, "; ".join(words)
+
+
+def outputs(run):
+    """Outputs along each free parameter, the others at the middle of the box."""
+    panels, words = output_panels(run)
+    if not panels:
+        raise Missing(f"every output is the same everywhere: {words}")
+    columns = min(2, len(panels))
+    rows = -(-len(panels) // columns)
+    lines = len(panels[0].curves) + 1 + bool(words)
+    figure, axes = plt.subplots(rows, columns, squeeze=False, figsize=(2.6 * columns, 1.9 * rows + 0.17 * lines))
+    for axis, panel in zip(axes.flat, panels):
+        panel.draw(figure, axis)
+    for axis in axes.flat[len(panels):]:
+        axis.remove()
+    figure.tight_layout(rect=(0, 0, 1, 1 - 0.17 * lines / figure.get_figheight()))
+    said = "along each parameter, the others at the middle of the box; bands: largest measured error"
+    handles = axes.flat[0].get_lines() if len(panels[0].curves) > 1 else []
+    figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0, 1), title="\n".join(filter(None, (said, words))),
+                  title_fontsize=7, fontsize=7, alignment="left", borderaxespad=0.2)
     return save(figure, run / "figures", "outputs.png") or []
 
 

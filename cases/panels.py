@@ -65,6 +65,28 @@ class Lines:
 
 
 @dataclass
+class Banded:
+    """Curves with a band of an error, absolute, around each."""
+
+    title: str
+    ylabel: str
+    xlabel: str
+    curves: list
+    error: float
+
+    def draw(self, _, axis):
+        for curve in self.curves:
+            axis.plot(curve.x, curve.y, color=curve.colour, label=curve.label, linewidth=curve.width)
+            axis.fill_between(curve.x, curve.y - self.error, curve.y + self.error, color=curve.colour,
+                              alpha=0.25, linewidth=0)
+        show_constants(axis)
+        axis.xaxis.set_major_locator(MaxNLocator(4))
+        axis.yaxis.set_major_locator(MaxNLocator(4))
+        axis.set_xlabel(self.xlabel)
+        axis.set_ylabel(self.ylabel)
+
+
+@dataclass
 class Triangles:
     """Values of nodes, or `flat` those of the triangles, as colours between the limits."""
 

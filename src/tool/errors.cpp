@@ -1,6 +1,7 @@
 // What the answers of a model are off by, printed, in tables and in the model.
 #include "verify.hpp"
 
+#include "rbvi/core/output_units.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/io/write_atomically.hpp"
@@ -115,14 +116,15 @@ const char *kind_name(OutputKind kind) {
 }
 
 /// Every output: its definition's kind, absolute errors, and errors over its range and its value.
-void write_output_errors(const fs::path &path, const std::vector<OutputError> &errors) {
+void write_output_errors(const fs::path &path, const Scene &scene,
+                         const std::vector<OutputError> &errors) {
   std::ostringstream text;
   text << std::setprecision(4)
-       << "output,kind,mean,max,mean_of_range,max_of_range,mean_of_value,max_of_value\n";
+       << "output,kind,mean,max,mean_of_range,max_of_range,mean_of_value,max_of_value,unit\n";
   for (const OutputError &e : errors)
     text << e.name << ',' << kind_name(output_column(e.name).kind) << ',' << e.mean << ',' << e.max
          << ',' << e.mean_of_range << ',' << e.max_of_range << ',' << e.mean_of_value << ','
-         << e.max_of_value << '\n';
+         << e.max_of_value << ',' << unit_of(scene, output_column(e.name)) << '\n';
   write_atomically(path, text.str());
 }
 
@@ -181,7 +183,7 @@ std::vector<OutputError> check_outputs(const ReducedModel &model, const Truths &
               "value\n",
               reduced.size());
   print_output_errors(errors);
-  write_output_errors(out / "outputs.csv", errors);
+  write_output_errors(out / "outputs.csv", model.scene, errors);
   return errors;
 }
 

@@ -19,7 +19,7 @@ sys.path[:0] = [str(ROOT / "cases"), str(ROOT / "tests/docs"), str(ROOT / "tests
 import figures
 from case_figures import case_panels
 from figure_tools import plt, read_grid, table
-from model_figures import drawn_outputs, places_of, stress_panels
+from model_figures import drawn_outputs, output_panels, places_of, stress_panels
 from panels import Lines, Triangles, figure_of, shown
 from small_runs import CHECKED, RUNS
 from solution_figures import contact_grids, solution_panels
@@ -193,6 +193,15 @@ def check_model(check, run):
                    f"{run.name}: along.csv does not go along {name}")
         check.that(np.all(np.isfinite(block["energy"])), f"{run.name}: no answers along {name}")
     check.that("normal_force" in drawn_outputs(along, names), f"{run.name}: no output is drawn")
+    panels, words = output_panels(run)
+    titles = [panel.title for panel in panels]
+    check.that("normal force" in titles and not ("reaction" in titles and "reaction" in words),
+               f"{run.name}: {titles} {words}")
+    for panel in panels:
+        check.that(len(panel.curves) == len(names) and panel.error >= 0, f"{run.name}: {panel.title}")
+        check.that(all(np.all(np.isfinite(curve.y)) and np.ptp(curve.x) > 0 for curve in panel.curves),
+                   f"{run.name}: {panel.title} has gaps")
+    check.that(any(panel.error > 0 for panel in panels), f"{run.name}: no band")
     rows, words = places_of(run)
     panels = stress_panels(run, rows)
     check_panels(check, panels, f"{run.name}, stresses")
