@@ -3,7 +3,7 @@
 
 Runs `RBVI check CASE -vtu FILE OPTIONS` and draws what that writes, at the middle of the box: the
 bodies in grey, boundaries in contact, what they face, and what holds and loads the bodies. Names and
-expressions are those of CASE/case.yaml without variants and choices, which OPTIONS may have; a
+expressions are those of the case file without variants and choices, which OPTIONS may have; a
 boundary that the mesh does not have is left out.
 """
 
@@ -223,7 +223,8 @@ def main(arguments):
         print("usage: configuration.py RBVI CASE PNG [OPTIONS]", file=sys.stderr)
         return 2
     rbvi, folder, png, *options = arguments
-    case = yaml.safe_load((Path(folder) / "case.yaml").read_text(encoding="utf-8"))
+    file = Path(folder) if Path(folder).is_file() else Path(folder) / "case.yaml"
+    case = {"name": file.resolve().parent.name, **yaml.safe_load(file.read_text(encoding="utf-8"))}
     with tempfile.TemporaryDirectory() as scratch:
         path = Path(scratch) / "u.vtu"
         subprocess.run([rbvi, "check", folder, "-vtu", str(path), *options], check=True,

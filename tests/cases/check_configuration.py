@@ -67,6 +67,13 @@ def main(rbvi, root, names):
             print(f"{folder.name}: {line}")
             status = 1
         configuration.plt.close(figure)
+    with tempfile.TemporaryDirectory() as scratch:  # a case that says no name, as those of rbvi new
+        subprocess.run([rbvi, "new", "block"], cwd=scratch, check=True, stdout=subprocess.DEVNULL)
+        block = Path(scratch) / "block"
+        for place in (block, block / "case.yaml"):
+            picture = Path(scratch) / "block.png"
+            status |= configuration.main([rbvi, str(place), str(picture)])
+            picture.unlink()
     print(f"{len(folders)} configurations")
     return status if folders else 1
 
