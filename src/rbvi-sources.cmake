@@ -17,7 +17,7 @@ endfunction()
 # YAML.
 rbvi_sources(common_sources core method io element contact scene model)
 set(stored_sources ${common_sources})
-set(with_files "/(model_file|model_fields|online_batch|online_tool|write_atomically|vtu|solution_files|zip|fmu)\\.cpp$")
+set(with_files "/(model_file|model_fields|online_batch|online_texts|online_tool|write_atomically|vtu|solution_files|zip|fmu)\\.cpp$")
 list(FILTER common_sources EXCLUDE REGEX "/(io/h5|scene/document)\\.cpp$")
 list(FILTER common_sources EXCLUDE REGEX ${with_files})
 list(FILTER stored_sources INCLUDE REGEX ${with_files})

@@ -2,11 +2,11 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/system_error.hpp"
 #include "rbvi/model/published/queries.hpp"
+#include "rbvi/model/rows.hpp"
 #include "shared_model.hpp"
 
 #include <cmath>
 #include <limits>
-#include <thread>
 
 namespace rbvi {
 
@@ -120,27 +120,15 @@ void answer_row(SharedQuery &query, bool extrapolate, std::size_t row, const Row
   rows.tell(row, last_error().c_str());
 }
 
-/// Blocks of rows go to whichever thread is free.
 void answer_rows(const std::shared_ptr<const SharedModel> &model, bool extrapolate,
                  unsigned threads, const Rows &rows) {
-  constexpr std::size_t block = 64;
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&](SharedQuery &query) {
-    for (std::size_t first = next.fetch_add(block); first < rows.count;
-         first = next.fetch_add(block))
-      for (std::size_t row = first; row < std::min(first + block, rows.count); ++row)
-        answer_row(query, extrapolate, row, rows);
-  };
-  if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
-  const std::size_t most = (rows.count + block - 1) / block;
-  threads = static_cast<unsigned>(std::min<std::size_t>(threads, std::max<std::size_t>(1, most)));
+  threads = threads_for(rows.count, threads);
   std::vector<std::unique_ptr<SharedQuery>> each; // made before any thread is: it may throw
   for (unsigned i = 0; i < threads; ++i)
     each.push_back(std::make_unique<SharedQuery>(model));
-  std::vector<std::jthread> others;
-  for (unsigned i = 1; i < threads; ++i)
-    others.emplace_back([&, i] { work(*each[i]); });
-  work(*each.front());
+  over_rows(rows.count, threads, [&](unsigned thread, std::size_t row) {
+    answer_row(*each[thread], extrapolate, row, rows);
+  });
 }
 
 } // namespace

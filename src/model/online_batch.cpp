@@ -9,6 +9,7 @@
 #include "rbvi/io/system_error.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/model/print.hpp"
+#include "rbvi/model/rows.hpp"
 #include "rbvi/model/training_samples.hpp"
 
 #include <unistd.h>
@@ -125,42 +126,67 @@ long count_queries(const OnlineArguments &arguments, const Scene &scene) {
   return count;
 }
 
-/// The next query; a row of a stream that is none becomes a row of the table. Nothing at the end.
-std::optional<Mu> next_query(ParameterReader &reader, OutputTable &table, Tally &tally) {
-  for (;;) {
+/// A query of a table, and what comes of it.
+struct Row {
+  RowText text;
+  std::optional<Mu> mu; ///< nothing: it is none, as `failed` says
+  std::string failed;   ///< why there is no answer; "": there is one
+  Outputs outputs{};
+  double to_other = 0;
+  std::string trace{};
+};
+
+/// Up to `most` of the next queries; a row of a stream that is none becomes a row of the table.
+std::vector<Row> next_rows(ParameterReader &reader, std::size_t most) {
+  std::vector<Row> rows;
+  while (rows.size() < most) {
     try {
-      return reader.next();
+      const std::optional<Mu> mu = reader.next();
+      if (!mu) break;
+      rows.push_back({row_of(*mu, reader.row().id), mu, ""});
     } catch (const Error &error) {
       if (error.status() != Status::bad_input) throw;
-      tally.add_failure(error.what());
-      table.add_failure(reader.row(), error.what());
+      rows.push_back({reader.row(), {}, error.what()});
     }
+  }
+  return rows;
+}
+
+/// The answer, or why there is none. `number`: of the row, from 1.
+void answer_row(OnlineSolver &solver, const OnlineArguments &arguments,
+                const std::optional<TraceTable> &traces, long number, Row &row) {
+  if (!row.mu) return;
+  try {
+    ReducedAnswer solution;
+    row.outputs = answer(solver, *row.mu, arguments, solution);
+    row.to_other = solution.to_other;
+    if (traces) row.trace = traces->rows(solver, solution, number);
+  } catch (const std::exception &error) {
+    row.failed = error.what();
   }
 }
 
-/// One row: the answer, or why there is none.
-void answer_row(const Mu &mu, const std::string &id, OnlineSolver &solver,
-                const OnlineArguments &arguments, OutputTable &table, Tally &tally) {
-  try {
-    ReducedAnswer solution;
-    const Outputs outputs = answer(solver, mu, arguments, solution);
-    const bool inside = in_box(solver.scene().parameters, mu);
-    table.add(mu, outputs, inside, id);
-    ++tally.rows;
-    if (nearest_sample_failed(solver.model(), mu)) ++tally.near_failed;
-    if (inside && beyond_validation(solver.model(), mu)) ++tally.unvalidated;
-    if (solution.to_other > 0) ++tally.not_alone;
-    tally.seconds += outputs.seconds.value_or(0);
-    tally.residual = larger(tally.residual, outputs.kkt_residual.value_or(0));
-    tally.violation = larger(tally.violation, violation(outputs));
-    tally.resolution.add(outputs);
-    const Scene &scene = solver.scene();
-    tally.locking = std::max(
-        tally.locking, locking_ratio(scene, expand(scene.parameters, mu), tally.contact_points));
-  } catch (const Error &error) {
-    tally.add_failure(error.what());
-    table.add_failure(row_of(mu, id), error.what());
+/// Into the table and the tally.
+void add_row(const Row &row, const OnlineSolver &solver, OutputTable &table, Tally &tally) {
+  if (!row.failed.empty()) {
+    tally.add_failure(row.failed);
+    table.add_failure(row.text, row.failed);
+    return;
   }
+  const Mu &mu = *row.mu;
+  const Scene &scene = solver.scene();
+  const bool inside = in_box(scene.parameters, mu);
+  table.add(mu, row.outputs, inside, row.text.id);
+  ++tally.rows;
+  if (nearest_sample_failed(solver.model(), mu)) ++tally.near_failed;
+  if (inside && beyond_validation(solver.model(), mu)) ++tally.unvalidated;
+  if (row.to_other > 0) ++tally.not_alone;
+  tally.seconds += row.outputs.seconds.value_or(0);
+  tally.residual = larger(tally.residual, row.outputs.kkt_residual.value_or(0));
+  tally.violation = larger(tally.violation, violation(row.outputs));
+  tally.resolution.add(row.outputs);
+  tally.locking = std::max(
+      tally.locking, locking_ratio(scene, expand(scene.parameters, mu), tally.contact_points));
 }
 
 void report(const OnlineArguments &arguments, const OnlineSolver &solver, const Tally &tally,
@@ -172,7 +198,9 @@ void report(const OnlineArguments &arguments, const OnlineSolver &solver, const 
         << " ms each, largest kkt_residual " << tally.residual;
   out << '\n';
   print_expected_errors(out, solver.model());
-  print_written(out, {arguments.out});
+  std::vector<fs::path> written{arguments.out};
+  if (!arguments.contact.empty()) written.emplace_back(arguments.contact);
+  print_written(out, written);
 }
 
 } // namespace
@@ -205,11 +233,33 @@ void warn_of_unvalidated(long answers, std::ostream &out) {
          "measured: theirs may be larger\n";
 }
 
-void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::ostream &out) {
+namespace {
+
+/// What is to be said of all rows. Throws failure where one has no answer.
+void conclude(const ReducedModel &model, const Tally &tally, bool tells_errors,
+              std::ostream &warnings) {
+  warn_of_violation(model, tally.violation, warnings);
+  warn_of_balance(warnings, model);
+  warn_of_failed_samples(tally.near_failed, warnings);
+  warn_of_unvalidated(tally.unvalidated, warnings);
+  if (tells_errors && expected_errors(model).count == 0) print_expected_errors(warnings, model);
+  tally.resolution.print(warnings);
+  warn_of_locking(tally.locking, warnings);
+  warn_of_other_answers(warnings, tally.not_alone, tally.rows - tally.unanswered);
+  if (tally.unanswered > 0)
+    throw failure(
+        std::to_string(tally.unanswered) + " of " + std::to_string(tally.rows) +
+        " queries have no answer: the column status says why (the first: " + tally.reason + ")");
+}
+
+} // namespace
+
+void answer_many(const OnlineArguments &arguments, const std::vector<OnlineSolver *> &solvers,
+                 std::ostream &out) {
+  OnlineSolver &solver = *solvers.front();
   const Scene &scene = solver.scene();
-  const ParameterSpace &space = scene.parameters;
   const long total = count_queries(arguments, scene);
-  ParameterReader reader(space, arguments.queries, arguments.extrapolate, scene.outputs);
+  ParameterReader reader(scene.parameters, arguments.queries, arguments.extrapolate, scene.outputs);
   const bool to_file = !arguments.out.empty() && arguments.out != "-";
   Tally tally;
   tally.contact_points = material_points(solver.contact());
@@ -218,34 +268,36 @@ void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::os
     return answer(solver, mu, arguments, unused);
   });
   TableFile file(to_file ? arguments.out : "", out);
+  std::optional<TableFile> trace_file;
+  std::optional<TraceTable> traces;
+  if (!arguments.contact.empty())
+    trace_file.emplace(arguments.contact, out).stream()
+        << traces.emplace(solver, arguments.digits()).header();
   {
     QueryProgress progress(total);
     OutputTable table(
-        file.stream(), space, like,
+        file.stream(), scene.parameters, like,
         {errors_of_outputs(solver.model()), true, arguments.digits(), reader.has_ids()});
-    while (const std::optional<Mu> mu = next_query(reader, table, tally)) {
-      answer_row(*mu, reader.row().id, solver, arguments, table, tally);
+    const auto threads = static_cast<unsigned>(solvers.size());
+    const std::size_t most = threads == 1 ? 1 : rows_of_thread * threads;
+    for (auto rows = next_rows(reader, most); !rows.empty(); rows = next_rows(reader, most)) {
+      over_rows(rows.size(), threads, [&](unsigned thread, std::size_t i) {
+        answer_row(*solvers[thread], arguments, traces, tally.rows + 1 + static_cast<long>(i),
+                   rows[i]);
+      });
+      for (const Row &row : rows) {
+        add_row(row, solver, table, tally);
+        if (trace_file) trace_file->stream() << row.trace;
+      }
       file.check();
       progress.update(tally);
     }
     file.check();
   }
   file.finish();
+  if (trace_file) trace_file->finish();
   if (to_file) report(arguments, solver, tally, out);
-  std::ostream &warnings = to_file ? out : std::cerr;
-  warn_of_violation(solver.model(), tally.violation, warnings);
-  warn_of_balance(warnings, solver.model());
-  warn_of_failed_samples(tally.near_failed, warnings);
-  warn_of_unvalidated(tally.unvalidated, warnings);
-  if (!to_file && expected_errors(solver.model()).count == 0)
-    print_expected_errors(warnings, solver.model());
-  tally.resolution.print(warnings);
-  warn_of_locking(tally.locking, warnings);
-  warn_of_other_answers(warnings, tally.not_alone, tally.rows - tally.unanswered);
-  if (tally.unanswered > 0)
-    throw failure(
-        std::to_string(tally.unanswered) + " of " + std::to_string(tally.rows) +
-        " queries have no answer: the column status says why (the first: " + tally.reason + ")");
+  conclude(solver.model(), tally, !to_file, to_file ? out : std::cerr);
 }
 
 } // namespace rbvi

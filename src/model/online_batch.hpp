@@ -24,10 +24,34 @@ void warn_of_failed_samples(long answers, std::ostream &out);
 /// errors were measured (beyond_validation).
 void warn_of_unvalidated(long answers, std::ostream &out);
 
-/// Answers all queries, row by row, in constant memory, into a temporary file, which becomes FILE
-/// at the end, or to `out`. A set that can be read twice is read to its end before the first
-/// answer; the rows of a stream say so themselves where they are none. Throws bad_input for a wrong
-/// set, and failure, at the end, where some query has no answer.
-void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::ostream &out);
+/// An answer as one JSON object, one line: parameters with value and unit; outputs with value and,
+/// where it was measured (`errors`), expected_error; residual, inside, to_other, warnings. A number
+/// that is none is null.
+std::string json_of(const OnlineSolver &solver, const Mu &mu, const ReducedAnswer &solution,
+                    const Outputs &outputs, const ErrorOfOutput &errors,
+                    const std::string &warnings);
+
+/// What answers are along their contacts, as CSV: for each node of each contact the row, the
+/// contact, the place and the fields, vectors by component.
+class TraceTable {
+public:
+  /// Its columns are those of the first training parameter whose answer faces something everywhere.
+  TraceTable(OnlineSolver &solver, int digits);
+  std::string header() const;
+  /// Of the answer in this row of the table of answers, from 1. What a contact has not is empty.
+  std::string rows(const OnlineSolver &solver, const ReducedAnswer &solution, long row) const;
+
+private:
+  std::string format_;
+  std::vector<std::string> columns_;
+};
+
+/// Answers all queries, row by row, or 64 for each of several threads at a time, in constant
+/// memory, into a temporary file, which becomes FILE at the end, or to `out`; traces along contacts
+/// likewise. `solvers`: of one model, one for each thread. A set that can be read twice is read to
+/// its end before the first answer; the rows of a stream say so themselves where they are none.
+/// Throws bad_input for a wrong set, and failure, at the end, where some query has no answer.
+void answer_many(const OnlineArguments &arguments, const std::vector<OnlineSolver *> &solvers,
+                 std::ostream &out);
 
 } // namespace rbvi

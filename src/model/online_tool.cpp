@@ -18,6 +18,7 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <memory>
 #include <set>
 #include <sstream>
 
@@ -48,6 +49,14 @@ const OnlineOption &find_option(const std::string &name) {
                   nearest_name(name, names) + " (--help lists all)");
 }
 
+/// A whole number between two.
+void check_number(const std::string &text, const std::string &name, int least, int most) {
+  const double number = parse_number(text, name);
+  if (number != std::floor(number) || number < least || number > most)
+    throw bad_input(name + " is " + text + ": use a whole number from " + std::to_string(least) +
+                    " to " + std::to_string(most));
+}
+
 void check_combination(const OnlineArguments &given) {
   if (given.help || given.version) return;
   if (given.model.empty()) throw bad_input("no model is named; --help shows how");
@@ -62,13 +71,19 @@ void check_combination(const OnlineArguments &given) {
     throw bad_input("--fmu is " + given.fmu + ": the name of a unit ends with .fmu");
   if (given.gradient && !one && !many) throw bad_input("--gradient needs --mu or --queries");
   if (given.warm && !many) throw bad_input("--warm needs --queries");
+  if (given.json && !one) throw bad_input("--json needs --mu");
+  if (!given.contact.empty() && !one && !many) throw bad_input("--contact needs --mu or --queries");
+  if (!given.threads.empty()) {
+    if (!many) throw bad_input("--threads needs --queries");
+    if (given.warm) throw bad_input("--warm goes from answer to answer: leave out --threads");
+    check_number(given.threads, "--threads", 1, 1000);
+  }
   if (!given.vtu.empty() && !one) throw bad_input("--vtu needs --mu");
   if (!given.out.empty() && !one && !many) throw bad_input("--out needs --mu or --queries");
   if (given.precision.empty()) return;
-  if (!many && given.out.empty()) throw bad_input("--precision needs --queries or --out");
-  const double digits = parse_number(given.precision, "--precision");
-  if (digits != std::floor(digits) || digits < 1 || digits > 17)
-    throw bad_input("--precision is " + given.precision + ": use a whole number from 1 to 17");
+  if (!many && given.out.empty() && given.contact.empty())
+    throw bad_input("--precision needs --queries, --out or --contact");
+  check_number(given.precision, "--precision", 1, 17);
 }
 
 } // namespace
@@ -83,8 +98,16 @@ const std::vector<OnlineOption> &online_options() {
        "(a CSV table on standard input)",
        &Arguments::queries},
       {"out", "FILE", "the table as CSV (standard output without it, or as -)", &Arguments::out},
-      {"precision", "DIGITS", "of the outputs in the table: 1 to 17, 10 without it",
+      {"precision", "DIGITS", "of the numbers in the tables: 1 to 17, 10 without it",
        &Arguments::precision},
+      {"contact", "FILE",
+       "a table as CSV of what answers are along contacts: row, contact, place, pressure, gap, ...",
+       &Arguments::contact},
+      {"threads", "N",
+       "with --queries: threads that answer, 64 rows for each at a time; rows keep their order and "
+       "their digits",
+       &Arguments::threads},
+      {"json", "", "with --mu: the answer as one JSON object", nullptr, &Arguments::json},
       {"vtu", "FILE",
        "with --mu: the field, and the contact region (of two bodies the curve) in FILE_contact, of "
        "several contacts each in FILE_contact_NAME",
@@ -136,6 +159,25 @@ Outputs answer(OnlineSolver &solver, const Mu &mu, const OnlineArguments &argume
 
 namespace {
 
+/// What is to be said of one answer, a line for each.
+std::string warnings_of(const OnlineSolver &solver, const Mu &mu, const ReducedAnswer &solution,
+                        const Outputs &outputs) {
+  std::ostringstream out;
+  const Scene &scene = solver.scene();
+  warn_of_violation(solver.model(), violation(outputs), out);
+  warn_of_balance(out, solver.model());
+  warn_of_failed_samples(nearest_sample_failed(solver.model(), mu) ? 1 : 0, out);
+  const bool unvalidated = in_box(scene.parameters, mu) && beyond_validation(solver.model(), mu);
+  warn_of_unvalidated(unvalidated ? 1 : 0, out);
+  ResolutionTally resolution;
+  resolution.add(outputs);
+  resolution.print(out);
+  const FullMu all = expand(scene.parameters, mu);
+  warn_of_locking(locking_ratio(scene, all, material_points(solver.contact())), out);
+  warn_of_other_answers(out, solution.to_other > 0 ? 1 : 0, 1);
+  return out.str();
+}
+
 void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ostream &out) {
   const Mu mu = parse_mu(solver.scene().parameters, arguments.mu, arguments.extrapolate);
   ReducedAnswer solution;
@@ -153,19 +195,19 @@ void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ost
     write_atomically(arguments.out, table.str());
     written.emplace_back(arguments.out);
   }
+  if (!arguments.contact.empty()) {
+    const TraceTable traces(solver, arguments.digits());
+    write_atomically(arguments.contact, traces.header() + traces.rows(solver, solution, 1));
+    written.emplace_back(arguments.contact);
+  }
+  const std::string warnings = warnings_of(solver, mu, solution, outputs);
+  if (arguments.json) {
+    out << json_of(solver, mu, solution, outputs, errors, warnings);
+    return;
+  }
   out << describe(solver.scene().parameters, mu) << '\n';
   print_outputs(out, outputs, errors);
-  warn_of_violation(solver.model(), violation(outputs), out);
-  warn_of_balance(out, solver.model());
-  warn_of_failed_samples(nearest_sample_failed(solver.model(), mu) ? 1 : 0, out);
-  warn_of_unvalidated(inside && beyond_validation(solver.model(), mu) ? 1 : 0, out);
-  ResolutionTally resolution;
-  resolution.add(outputs);
-  resolution.print(out);
-  warn_of_locking(locking_ratio(solver.scene(), expand(solver.scene().parameters, mu),
-                                material_points(solver.contact())),
-                  out);
-  warn_of_other_answers(out, solution.to_other > 0 ? 1 : 0, 1);
+  out << warnings;
   if (inside)
     print_expected_errors(out, solver.model());
   else
@@ -213,12 +255,14 @@ void check_files(const OnlineArguments &arguments, const Scene &scene) {
   const std::vector<NamedFile> inputs{{"the file of queries", arguments.queries},
                                       {"the model", arguments.model}};
   if (arguments.out != "-") check_overwriting({"--out", arguments.out}, inputs);
+  check_overwriting({"--contact", arguments.contact}, inputs);
+  check_overwriting({"--contact", arguments.contact}, {{"--out", arguments.out}});
   if (arguments.vtu.empty()) return;
   std::vector<std::filesystem::path> files = contact_files(arguments.vtu, scene);
   files.emplace_back(arguments.vtu);
   for (const std::filesystem::path &vtu : files) {
     check_overwriting({"--vtu", vtu}, inputs);
-    check_overwriting({"--vtu", vtu}, {{"--out", arguments.out}});
+    check_overwriting({"--vtu", vtu}, {{"--out", arguments.out}, {"--contact", arguments.contact}});
   }
 }
 
@@ -256,10 +300,12 @@ void run(const OnlineArguments &arguments, const Registry &registry, std::ostrea
   if (!arguments.method.empty()) how.method = online_method(arguments.method);
   OnlineSolver solver(model, how);
   check_files(arguments, solver.scene());
-  if (!arguments.mu.empty())
-    answer_one(arguments, solver, out);
-  else
-    answer_many(arguments, solver, out);
+  if (!arguments.mu.empty()) return answer_one(arguments, solver, out);
+  std::vector<std::unique_ptr<OnlineSolver>> others;
+  std::vector<OnlineSolver *> solvers{&solver};
+  while (solvers.size() < arguments.thread_count())
+    solvers.push_back(others.emplace_back(std::make_unique<OnlineSolver>(model, how)).get());
+  answer_many(arguments, solvers, out);
 }
 
 } // namespace

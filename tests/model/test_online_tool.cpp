@@ -2,8 +2,10 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/io/vtu.hpp"
 #include "rbvi/model/online_tool.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -312,7 +314,7 @@ TEST_F(OnlineBinary, IdsAreHandedOnAndDigitsAreChosen) {
   EXPECT_NEAR(parse_number(row.at("energy"), "energy"), energy, 1e-14 * std::abs(energy));
   EXPECT_TRUE(refused("model.h5 --queries grid:2,2,2 --precision 18", "from 1 to 17"));
   EXPECT_TRUE(refused("model.h5 --queries grid:2,2,2 --precision 1.5", "from 1 to 17"));
-  EXPECT_TRUE(refused("model.h5 --mu 0.2,0,0 --precision 3", "needs --queries or --out"));
+  EXPECT_TRUE(refused("model.h5 --mu 0.2,0,0 --precision 3", "needs --queries, --out"));
 }
 
 TEST_F(OnlineBinary, WarnsNextToAFailedTrainingSample) {
@@ -411,6 +413,94 @@ TEST_F(OnlineBinary, SaysWhereNothingSoNearTheBoundaryWasMeasured) {
   model.made.validated_mu = {};
   write_model(model, "model.h5");
   EXPECT_TRUE(contains(online("model.h5 --mu 0.2,0,0").out, "not measured: nobody knows"));
+}
+
+/// The number behind a text.
+double number_behind(const std::string &text, const std::string &before) {
+  const std::size_t at = text.find(before);
+  return at == std::string::npos ? std::nan("") : std::stod(text.substr(at + before.size()));
+}
+
+TEST_F(OnlineBinary, OneAnswerAsJson) {
+  model.made.validation_enriched.outputs = {{"energy", 1e-5, 2e-5, 1e-4, 2e-4, 1e-4, 2e-4}};
+  write_model(model, "model.h5");
+  EXPECT_TRUE(refused("model.h5 --queries random:2:1 --json", "--json needs --mu"));
+  const Finished run = online("model.h5 --mu 0.18,0.02,-0.01 --json --vtu u.vtu");
+  EXPECT_EQ(run.status, 0) << run.out;
+  EXPECT_EQ(lines_of(run.out).size(), 1U);
+  OnlineSolver solver(model);
+  const double energy = solver.solve({0.18, 0.02, -0.01}).energy;
+  EXPECT_NEAR(number_behind(run.out, R"("outputs": {"energy": {"value": )"), energy,
+              1e-14 * std::abs(energy));
+  EXPECT_LE(number_behind(run.out, R"(}}, "residual": )"), 1e-10);
+  for (const char *part :
+       {R"({"parameters": {"radius": {"value": 0.18, "unit": "m"}, "center_x": )",
+        R"(, "expected_error": 2e-05}, "normal_force": {"value": )",
+        R"("inside": true, "to_other": 0, "warnings": ["warning: contact reaches the end)"})
+    EXPECT_TRUE(contains(run.out, part)) << part << " in\n" << run.out;
+  EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '{'),
+            std::count(run.out.begin(), run.out.end(), '}'));
+  EXPECT_TRUE(std::filesystem::exists("u.vtu"));
+  const Finished outside = online("model.h5 --mu 0.25,0,0 --extrapolate --json");
+  EXPECT_TRUE(contains(outside.out, R"("inside": false)")) << outside.out;
+  EXPECT_FALSE(contains(outside.out, R"("expected_error")")) << outside.out;
+}
+
+/// Without the column seconds.
+std::vector<std::map<std::string, std::string>> timeless_rows_of(const std::string &table) {
+  auto rows = rows_of(table);
+  for (auto &row : rows)
+    row.erase("seconds");
+  return rows;
+}
+
+TEST_F(OnlineBinary, ThreadsChangeNeitherOrderNorDigits) {
+  EXPECT_TRUE(refused("model.h5 --mu 0.2,0,0 --threads 2", "--threads needs --queries"));
+  EXPECT_TRUE(refused("model.h5 --queries random:2:1 --threads 0", "from 1 to 1000"));
+  EXPECT_TRUE(refused("model.h5 --queries random:2:1 --threads 2 --warm", "leave out --threads"));
+  const std::string ask = "model.h5 --queries random:1000:3 --precision 17 --contact ";
+  ASSERT_EQ(online(ask + "trace1.csv --out one.csv").status, 0);
+  ASSERT_EQ(online(ask + "trace3.csv --out three.csv --threads 3").status, 0);
+  const auto one = timeless_rows_of(slurp("one.csv"));
+  EXPECT_EQ(one.size(), 1000U);
+  EXPECT_EQ(one, timeless_rows_of(slurp("three.csv")));
+  EXPECT_EQ(slurp("trace1.csv"), slurp("trace3.csv"));
+  // Rows of a stream that are none stay where they stood.
+  const std::string stream = "( { echo id,radius,center_x,center_y; for i in $(seq 300); do "
+                             "echo $i,0.$((i % 4 == 0 ? 9 : 2)),0,0; done; } | " RBVI_ONLINE
+                             " model.h5 --queries - --threads 2 2> said )";
+  const auto rows = rows_of(shell(stream).out);
+  ASSERT_EQ(rows.size(), 300U);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].at("id"), std::to_string(i + 1));
+    EXPECT_EQ(rows[i].at("status") == "ok", (i + 1) % 4 != 0) << i;
+  }
+  EXPECT_TRUE(contains(slurp("said"), "75 of 300 queries have no answer")) << slurp("said");
+}
+
+TEST_F(OnlineBinary, WritesAnswersAlongTheContact) {
+  EXPECT_TRUE(refused("model.h5 --contact one.csv", "needs --mu or --queries"));
+  EXPECT_TRUE(refused("model.h5 --mu 0.2,0,0 --contact ./model.h5", "would overwrite the model"));
+  std::ofstream("mu.csv") << "radius,center_x,center_y\n0.18,0.02,-0.01\n0.9,0,0\n0.2,0,0\n";
+  (void)shell(RBVI_ONLINE " model.h5 --queries - --contact trace.csv --out out.csv --precision 17"
+                          " < mu.csv");
+  const auto rows = rows_of(slurp("trace.csv"));
+  OnlineSolver solver(model);
+  std::size_t at = 0;
+  for (const auto &[number, mu] : {std::pair{"1", Mu{0.18, 0.02, -0.01}}, {"3", Mu{0.2, 0, 0}}}) {
+    const Grid grid = solver.contact_grid(solver.solve(mu), 0);
+    for (Index node = 0; node < grid.points.rows(); ++node, ++at) {
+      ASSERT_LT(at, rows.size());
+      EXPECT_EQ(rows[at].at("row"), number);
+      EXPECT_EQ(parse_number(rows[at].at("y"), "y"), grid.points(node, 1));
+      EXPECT_NEAR(parse_number(rows[at].at("pressure"), "p"), grid.of_nodes.front().values[node],
+                  1e-13);
+      EXPECT_EQ(parse_number(rows[at].at("normal_y"), "n"), 0);
+    }
+  }
+  EXPECT_EQ(at, rows.size());
+  ASSERT_EQ(online("model.h5 --mu 0.18,0.02,-0.01 --contact one.csv --precision 17").status, 0);
+  EXPECT_TRUE(slurp("trace.csv").starts_with(slurp("one.csv")));
 }
 
 TEST_F(OnlineBinary, IsSerial) {

@@ -1,4 +1,4 @@
-// rbvi-online: answers parameters from a reduced model, on one core.
+// rbvi-online: answers parameters from a reduced model, without MPI.
 #pragma once
 
 #include "rbvi/core/scene.hpp"
@@ -9,11 +9,14 @@
 namespace rbvi {
 
 struct OnlineArguments {
-  std::string model, mu, queries, out, vtu, pack, fmu, precision, method; ///< "" where not given
+  /// "" where not given.
+  std::string model, mu, queries, out, contact, vtu, pack, fmu, precision, method, threads;
   bool extrapolate = false, decorrelated = false, full = false, gradient = false, warm = false,
-       help = false, version = false;
+       json = false, help = false, version = false;
   /// Of the outputs in tables.
   int digits() const { return precision.empty() ? 10 : std::stoi(precision); }
+  /// Of a table of answers.
+  std::size_t thread_count() const { return threads.empty() ? 1 : std::stoul(threads); }
 };
 
 /// An option: what it takes ("FILE"; "": it is a flag), what it does, and its place.
