@@ -24,9 +24,9 @@ void warn_of_failed_samples(long answers, std::ostream &out);
 /// errors were measured (beyond_validation).
 void warn_of_unvalidated(long answers, std::ostream &out);
 
-/// An answer as one JSON object, one line: parameters with value and unit; outputs with value and,
-/// where it was measured (`errors`), expected_error; residual, inside, to_other, warnings. A number
-/// that is none is null.
+/// An answer as one JSON object, one line: parameters and outputs with value and unit, outputs
+/// where it was measured (`errors`) with expected_error; residual, inside, to_other, warnings. A
+/// number that is none is null.
 std::string json_of(const OnlineSolver &solver, const Mu &mu, const ReducedAnswer &solution,
                     const Outputs &outputs, const ErrorOfOutput &errors,
                     const std::string &warnings);

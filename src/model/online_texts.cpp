@@ -1,6 +1,7 @@
 #include "online_batch.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/output_units.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/model/training_samples.hpp"
@@ -57,6 +58,7 @@ std::string json_of(const OnlineSolver &solver, const Mu &mu, const ReducedAnswe
     const auto error = errors.find(column.name);
     values.push_back(
         json_text(column.name) + ": {" + json_member("value", value) +
+        ", \"unit\": " + json_text(unit_of(solver.scene(), column)) +
         (error == errors.end() ? "}" : ", " + json_member("expected_error", error->second) + "}"));
   }
   std::istringstream all(warnings);
