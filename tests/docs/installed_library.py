@@ -4,11 +4,12 @@
 Installs BUILD into a prefix of its own; compiles cases/from_c.c by pkg-config and by find_package in
 empty folders; its answer has the digits of rbvi-online's, also where the model is gone; the library
 shows rbvi.h alone and needs nothing beyond the C++ library, as that of units, which shows the functions
-of FMI alone and which rbvi-online finds; the package of Python finds librbvi.
+of FMI alone and which rbvi-online finds; the package of Python finds librbvi; rbvi-figures draws a run.
 """
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -110,6 +111,10 @@ def main(build, source, models, cmake):
                    env={**os.environ, "PYTHONPATH": str(package)})
         if "radius" not in text:
             sys.exit(text)
+        shutil.copytree(Path(models) / "disk_condensed", work / "run")
+        run(prefix / "bin/rbvi-figures", work / "run")
+        if not (work / "run/figures/outputs.png").is_file():
+            sys.exit("rbvi-figures draws no outputs")
 
 
 if __name__ == "__main__":
