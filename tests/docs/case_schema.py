@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""case_schema.py ROOT: every cases/*/case.yaml is valid by cases/case.schema.json, and what is wrong in
+"""case_schema.py ROOT: every cases/*/case.yaml, of cases/known too, is valid by cases/case.schema.json, and what is wrong in
 one of them is found. Without python3-jsonschema and python3-yaml the exit status is 77: skipped.
 """
 
@@ -67,7 +67,7 @@ def main(root):
     jsonschema.Draft7Validator.check_schema(schema)
     valid = jsonschema.Draft7Validator(schema)
     cases = {path.parent.name: by_text(yaml.load(path.read_text(encoding="utf-8"), Loader))
-             for path in sorted(root.glob("cases/*/case.yaml"))}
+             for path in sorted([*root.glob("cases/*/case.yaml"), *root.glob("cases/known/*/case.yaml")])}
     wrong = [f"{name}: {error.message} at {'/'.join(map(str, error.path))}"
              for name, case in cases.items() for error in valid.iter_errors(case)]
     patch = cases["patch"]

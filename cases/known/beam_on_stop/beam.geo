@@ -1,0 +1,25 @@
+// A beam of length 20 and height 1, whose foot is the last 0.04 of its lower side.
+DefineConstant[edges = 80]; // of its length
+n = edges / 20;
+Point(1) = {0, 0, 0};
+Point(2) = {19.96, 0, 0};
+Point(3) = {20, 0, 0};
+Point(4) = {20, 1, 0};
+Point(5) = {19.96, 1, 0};
+Point(6) = {0, 1, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 5};
+Line(5) = {5, 6};
+Line(6) = {6, 1};
+Transfinite Curve {1, 5} = edges + 1;
+Transfinite Curve {2, 4} = 2;
+Transfinite Curve {3, 6} = n + 1;
+Curve Loop(1) = {1:6};
+Plane Surface(1) = {1};
+Transfinite Surface {1} = {1, 3, 4, 6};
+Physical Curve("clamp") = {6};
+Physical Curve("foot") = {2};
+Physical Curve("top") = {4, 5};
+Physical Surface("beam") = {1};
