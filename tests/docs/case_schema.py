@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""case_schema.py ROOT: every cases/*/case.yaml, of cases/known too, is valid by cases/case.schema.json, and what is wrong in
-one of them is found. Without python3-jsonschema and python3-yaml the exit status is 77: skipped.
+"""case_schema.py ROOT: every case.yaml of cases and cases/known is valid by cases/case.schema.json, and what is
+wrong in one of them is found. Without python3-jsonschema and python3-yaml the exit status is 77: skipped.
 """
 
 import copy
