@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from figure_tools import (BLUE, FLOOR, GREEN, GREY, ORANGE, PURPLE, log_axis, plt, save, text_rows)
+from figure_tools import (BLUE, FLOOR, GREEN, GREY, ORANGE, PURPLE, WIDTH, log_axis, plt, save, text_rows)
 
 # Beginning of the method, or of what it includes: name in the legend, colour, mark.
 KINDS = (("reduced", "reduced model (N + S, R)", BLUE, "o"),
@@ -59,14 +59,14 @@ def name_rows(axis, rows, time, error):
     named = []
     for row, t, e in reversed(list(zip(rows, np.log10(time), np.log10(error)))):
         words = row["method"].split(" ", 1)[-1].strip("()")
-        together = any(abs(t - at) < 0.4 and abs(e - high) < 0.5 for at, high in named)
+        together = any(abs(t - at) < 1 and abs(e - high) < 2 for at, high in named)
         if not np.isfinite(e) or together or words in ("interpolation", "snapshot"):
             continue
         right_is_taken = any(0 < at - t < 0.9 and abs(e - high) < 0.5 for at, high in named)
         named.append((t, e))
         axis.annotate(words, (10 ** t, 10 ** e), xytext=(-6 if right_is_taken else 6, 3),
                       ha="right" if right_is_taken else "left", textcoords="offset points",
-                      fontsize=6.5, color=GREY)
+                      color=GREY)
 
 
 def bench(run):
@@ -78,7 +78,7 @@ def bench(run):
         return []
     rows = [row for row in text_rows(path) if row["u_max"]]
     time = np.array([number(row["median_ms"]) for row in rows])
-    figure, axes = plt.subplots(1, 2, figsize=(10.5, 4.4), constrained_layout=True, sharex=True)
+    figure, axes = plt.subplots(2, 1, figsize=(WIDTH, 6), constrained_layout=True, sharex=True)
     # The first row is the truth that errors are measured against: zero, at the floor.
     columns = {name: np.maximum([number(row.get(name)) for row in rows], FLOOR)
                for name in ("u_max", "lambda_max", "outputs_max")}
@@ -96,9 +96,10 @@ def bench(run):
         log_axis(axis, "median time of a query (ms)", "largest relative error (-)", title)
         axis.set_xscale("log")
         axis.margins(x=0.15)
+        axis.label_outer()
     handles.update({line.get_label(): line for line in axes[1].lines
                     if line.get_label().startswith("Pareto")})
     figure.legend(handles=handles.values(), labels=handles.keys(), loc="upper center",
-                  bbox_to_anchor=(0.5, 0), ncols=3)
+                  bbox_to_anchor=(0.5, 0), ncols=2)
     save(figure, run / "figures", "bench.png")
     return []

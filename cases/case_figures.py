@@ -5,18 +5,19 @@ from functools import partial
 
 import numpy as np
 from matplotlib.collections import LineCollection
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.transforms import ScaledTranslation
+from matplotlib.ticker import MaxNLocator
 
 from figure_tools import (BLUE, GREEN, ORANGE, PURPLE, beside, in_length, label_plane, parameters_of,
                           plt, read_grid, wider)
-from panels import Curve, Drawn, Lines, Triangles, legend_below, save_panels
+from panels import Curve, Drawn, Lines, Triangles, legend_below, ratio_of, save_panels
 
 # Places in the box by the names of their files.
 PLACES = {"middle": ("middle of the box", BLUE), "least": ("where the gap is least", ORANGE),
           "largest": ("where the gap is largest", GREEN)}
-HUES = (BLUE, GREEN, PURPLE, "#E69F00", "#56B4E9", ORANGE)
+HUES = (BLUE, GREEN, PURPLE, "#E69F00", "#56B4E9", ORANGE, "#8B1A1A", "#B8B000", "#4B0082", "#A0522D")
+FLAT = 0.1  # of the length of a boundary: smaller gaps are drawn larger than they are
+CLOSED = 1e-9  # of the length of a boundary
 MOST_WAYS = 40  # from points to their partners that are drawn
 FREE = "(free)"
 
@@ -33,7 +34,7 @@ def draw_regions(mesh, axis):
             for k, name in enumerate(mesh.of_cells)]
 
 
-def draw_groups(mesh, surface, figure, axis):
+def draw_groups(mesh, surface, _, axis):
     """The mesh, its regions in shades, the groups of its surface in colours, the largest below; what
     is free is dotted."""
     handles = draw_regions(mesh, axis)
@@ -49,17 +50,15 @@ def draw_groups(mesh, surface, figure, axis):
         draw(groups[name], name, colors=HUES[k % len(HUES)], linewidths=2 if inside else 4)
     free = surface.of_cells[FREE] > 0
     if free.any():
-        draw(free, "free: no condition, load or contact", colors="black", linewidths=1.2,
+        draw(free, "free of conditions and contact", colors="black", linewidths=1.2,
              linestyles=":")
     label_plane(axis)
-    axis.locator_params(nbins=5)
-    below = axis.transAxes + ScaledTranslation(0, -0.5, figure.dpi_scale_trans)  # inches
-    axis.legend(handles=handles, loc="upper left", bbox_to_anchor=(-0.1, 0), bbox_transform=below,
-                borderpad=0, ncols=2)
+    axis.xaxis.set_major_locator(MaxNLocator(2 if ratio_of(mesh.points) > 1 else 4))
+    legend_below(axis, handles)
 
 
 def draw_partners(grids, _, axis):
-    """A contact boundary, what it faces, and the ways between them."""
+    """A contact boundary in black, what it faces at each place in its colour, and the ways between."""
     handles = []
     for place, grid in grids.items():
         label, colour = PLACES[place]
@@ -67,12 +66,12 @@ def draw_partners(grids, _, axis):
         some = slice(None, None, max(1, len(x) // MOST_WAYS))
         axis.add_collection(LineCollection(np.stack([x, x + way], axis=1)[some], colors=colour,
                                            linewidths=0.5, alpha=0.7))
-        handles += axis.plot(x[:, 0], x[:, 1], color=colour, label=label)
-        axis.plot(*(x + way).T, color=colour, linestyle="--", linewidth=1.2)
-    handles.append(Line2D([], [], color="black", linestyle="--", linewidth=1.2, label="what it faces"))
-    legend_below(axis, handles)
+        boundary = axis.plot(x[:, 0], x[:, 1], color="black", linewidth=2.2, label="contact boundary")
+        handles += axis.plot(*(x + way).T, color=colour, label=label)
+    legend_below(axis, [*boundary, *handles])
     label_plane(axis)
-    axis.set_aspect("equal", adjustable="datalim")
+    gap = max(np.abs(grid.of_nodes["gap"]).max() for grid in grids.values())
+    axis.set_aspect("auto" if gap < FLAT * np.ptp(x, axis=0).max() else "equal", adjustable="datalim")
 
 
 def contact_panels(grids, which):
@@ -85,9 +84,13 @@ def contact_panels(grids, which):
                 for place, grid in grids.items()]
     curves = [Curve(wider(grid.points)[0], grid.of_nodes["gap"], *PLACES[place])
               for place, grid in grids.items()]
-    return [Drawn(f"{which} and what it faces", partial(draw_partners, grids)),
+    return [Drawn(f"what {which} faces", partial(draw_partners, grids), ratio=0.75),
             Lines(f"gap along {which}", in_length(wider(middle.points)[1]),
                   in_length("gap, overlap below 0"), curves)]
+
+
+def is_closed(grids):
+    return all(np.abs(grid.of_nodes["gap"]).max() < CLOSED * np.ptp(grid.points) for grid in grids.values())
 
 
 def partners(path):
@@ -105,11 +108,15 @@ def case_panels(path):
     """Panels, and the parameters of the places in the box."""
     mesh, surface = (read_grid(beside(path, name)) for name in ("_mesh", "_surface"))
     contacts = partners(path)
-    panels = [Drawn("mesh, groups of its surface", partial(draw_groups, mesh, surface))]
+    panels = [Drawn("mesh and its groups", partial(draw_groups, mesh, surface),
+                    ratio=ratio_of(mesh.points))]
     words = {}
     for name, grids in contacts.items():
         which = name if len(contacts) > 1 else "contact"
-        panels += contact_panels(grids, which)
+        if is_closed(grids):
+            words[f"{which}, gap"] = "closed everywhere"
+        else:
+            panels += contact_panels(grids, which)
         for place, grid in grids.items():
             label = PLACES[place][0] if place == "middle" else f"{which}, {PLACES[place][0]}"
             words[label] = parameters_of(grid)

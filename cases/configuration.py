@@ -21,7 +21,6 @@ except ImportError:
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.transforms import ScaledTranslation
 
 from configuration_case import (Bodies, Boundary, boundary_of, values_of, words_of_contact,
                                 words_of_imposed, words_of_load)
@@ -29,11 +28,13 @@ from configuration_marks import (ARROW, HELD, SPRING, Labels, Mark, draw_held, d
                                  draw_regions, draw_rigid, draw_spring, draw_ticks, filled,
                                  mark_dimensions)
 from figure_tools import BLUE, GREEN, ORANGE, PURPLE, in_length, parameters_of, plt, use_units
+from panels import inches_from
 from solution_figures import outline
 
 CONTACT = (BLUE, GREEN, PURPLE)
 LOADS = (ORANGE, "#B8860B", "#8B1A1A")
 CONTACT_AREA = "#9cc7e4"
+BODY = 4.8  # inches: width of the picture of bodies
 THIN = 0.03  # of the size of the bodies: a thinner one is shown beside them, larger
 
 
@@ -107,7 +108,7 @@ def frame(axis, margin, view=None):
     axis.set_ylim(low[1] - margin, high[1] + margin)
 
 
-def title_of(case, grid, width=72):
+def title_of(case, grid, width=66):
     values = parameters_of(grid).split(",  ")
     words = ", ".join(value.replace(" ", "\u00a0") for value in values)
     return textwrap.fill(f"{case['name']}: undeformed, at {words}", width)
@@ -117,7 +118,7 @@ def draw_view(axis, bodies, case, view=None):
     """The whole, or the part between two corners. Handles of a legend."""
     size = bodies.size if view is None else np.ptp(view, axis=0).max()
     handles, marks = draw_body(axis, bodies, case, size)
-    frame(axis, 0.13 * size, view)
+    frame(axis, (0.17 if view is None else 0.13) * size, view)
     axis.figure.canvas.draw()
     labels = Labels(axis, size)
     for mark in marks:
@@ -131,26 +132,33 @@ def draw_view(axis, bodies, case, view=None):
 
 def body_figure(bodies, case):
     extent, thin = np.ptp(bodies.points, axis=0), thin_part(bodies)
-    width = 6.4 if extent[0] > 0.6 * extent[1] else 5
-    height = min(7.5, max(3.2, width * extent[1] / extent[0]))
+    height = float(np.clip(BODY * extent[1] / extent[0], 2.2, 5))
     if thin is None:
-        figure, axis = plt.subplots(figsize=(width, height))
+        figure, axis = plt.subplots(figsize=(BODY, height))
+        figure.subplots_adjust(top=0.98)
     else:
-        figure, (axis, part) = plt.subplots(1, 2, figsize=(10, height), width_ratios=(1, 1.3))
+        figure, (axis, part) = plt.subplots(2, 1, figsize=(BODY, height + 2.2), height_ratios=(height, 1.6))
         draw_view(part, bodies, case, thin)
-        part.set_title("(b) the thin part", loc="left", fontsize=8)
+        part.set_title("(b) the thin part", loc="left")
     handles = draw_view(axis, bodies, case)
-    below = axis.transAxes + ScaledTranslation(-0.2, -0.5, figure.dpi_scale_trans)
-    axis.legend(handles=handles, loc="upper left", bbox_to_anchor=(0, 0), bbox_transform=below,
-                borderpad=0, fontsize=7.5)
-    title = title_of(case, bodies.answer, 72 if thin is None else 110)
-    axis.set_title(title if thin is None else title + "\n\n(a)", loc="left", fontsize=8)
+    add_legend(figure, figure.axes[-1], handles)
+    figure.text(0.02, 1, title_of(case, bodies.answer), va="bottom")
+    if thin is not None:
+        axis.set_title("(a)", loc="left")
     return figure
+
+
+def add_legend(figure, axis, handles):
+    """Below the axis, one line for each."""
+    for handle in handles:
+        handle.set_label(textwrap.fill(handle.get_label(), 56))
+    figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(-0.5, -0.5),
+                  bbox_transform=inches_from(axis), borderpad=0)
 
 
 def membrane_figure(bodies, case):
     """From above, and a cut through the middle of the obstacle."""
-    figure, (above, cut) = plt.subplots(1, 2, figsize=(8.4, 4))
+    figure, (above, cut) = plt.subplots(1, 2, figsize=(BODY, 2.6), gridspec_kw={"wspace": 0.45})
     (name, grids), = bodies.contacts.items()
     grid = grids["middle"]
     handles = [Patch(facecolor=CONTACT_AREA, edgecolor=BLUE, label=f"contact {name}: above an obstacle"),
@@ -164,8 +172,8 @@ def membrane_figure(bodies, case):
                 for load, force in case["loads"].items()]
     draw_from_above(above, bodies, grid, name, bodies.boundary(what["at"]), held, what)
     draw_cut(cut, bodies, grid)
-    figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.08, 0.0), ncols=2, fontsize=7.5)
-    figure.suptitle(title_of(case, bodies.answer, 110), fontsize=8, x=0.08, y=1, ha="left")
+    add_legend(figure, above, handles)
+    figure.text(0.02, 1, title_of(case, bodies.answer), va="bottom")
     return figure
 
 
@@ -177,9 +185,9 @@ def draw_from_above(axis, bodies, grid, name, boundary, held, what):
     draw_held(axis, boundary, what, bodies.size)
     frame(axis, 0.1 * bodies.size)
     axis.figure.canvas.draw()
-    axis.text(*grid.points[:, :2].mean(axis=0), name, color=BLUE, fontsize=8, ha="center", va="center",
+    axis.text(*grid.points[:, :2].mean(axis=0), name, color=BLUE, ha="center", va="center",
               zorder=9)
-    axis.text(0, bodies.points[:, 1].max() + 0.05 * bodies.size, held, color=HELD, fontsize=8,
+    axis.text(0, bodies.points[:, 1].max() + 0.05 * bodies.size, held, color=HELD,
               ha="center")
     axis.set(xlabel=in_length("x"), ylabel=in_length("y"))
     mark_dimensions(axis, bodies, [Boundary(rim, rim[:, 0])])
@@ -203,7 +211,7 @@ def draw_cut(axis, bodies, grid):
     frame(axis, 0.05 * size)
     axis.set(xlabel=in_length("x"), ylabel=in_length("u"))
     axis.set_xticks([low, 0, high])
-    axis.set_title("(b) cut through the middle of the obstacle", loc="left")
+    axis.set_title("(b) cut through its middle", loc="left")
 
 
 def figure_of(bodies, case):
@@ -213,7 +221,7 @@ def figure_of(bodies, case):
 def draw(path, case, png):
     use_units(path)
     figure = figure_of(Bodies(path), case)
-    figure.savefig(png, dpi=120, bbox_inches="tight")
+    figure.savefig(png, dpi=150, bbox_inches="tight", pad_inches=0.02)
     plt.close(figure)
     print(f"wrote {png}")
 

@@ -28,7 +28,7 @@ class Labels:
         place, normal = mark.boundary.middle()
         if not self.axis.viewLim.contains(*place):
             return
-        label = self.axis.text(*place, mark.text, color=mark.colour, fontsize=8, ha="center",
+        label = self.axis.text(*place, mark.text, color=mark.colour, ha="center",
                                va="center", zorder=9,
                                path_effects=[withStroke(linewidth=2, foreground="white")])
         renderer = self.axis.figure.canvas.get_renderer()

@@ -16,12 +16,15 @@ import numpy as np
 # Okabe and Ito's palette: told apart with every kind of colour vision, and in grey.
 BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#666666"
 
+COLUMN = 3.46   # inches: of one column of a journal, 88 mm
+WIDTH = 5.2     # at most: of text of 9 points, at the width of a column 6 are left
+LINE = 0.165    # height of a line of text
 FLOOR = 1e-16  # round-off: logarithmic axes go no lower
 
 plt.rcParams.update({
-    "font.size": 9, "axes.titlesize": 10, "axes.spines.top": False, "axes.spines.right": False,
+    "font.size": 9, "axes.titlesize": 9, "figure.titlesize": 9, "axes.spines.top": False, "axes.spines.right": False,
     "axes.grid": True, "grid.color": "#dddddd", "grid.linewidth": 0.6, "lines.linewidth": 1.6,
-    "lines.markersize": 4, "legend.frameon": False, "legend.fontsize": 8, "savefig.dpi": 150,
+    "lines.markersize": 4, "legend.frameon": False, "legend.fontsize": 9, "savefig.dpi": 200,
     "pdf.fonttype": 42,
 })
 
@@ -214,6 +217,7 @@ def parameters_of(grid):
 def label_plane(axis):
     axis.set_aspect("equal")
     axis.grid(False)
+    axis.locator_params(nbins=4)
     axis.set_xlabel(in_length("x"))
     axis.set_ylabel(in_length("y"))
 
@@ -235,8 +239,7 @@ def clip_at_floor(axis):
             line.set_ydata(np.where(low, FLOOR, values))
             clipped = True
     if clipped:
-        axis.text(0.01, 0.01, f"values below {FLOOR:.0e} drawn there", fontsize=7, color=GREY,
-                  transform=axis.transAxes)
+        axis.text(0.01, 0.01, f"values below {FLOOR:.0e} drawn there", color=GREY, transform=axis.transAxes)
         axis.relim()
         axis.autoscale_view(scalex=False)
 
@@ -252,6 +255,11 @@ def whole_decades(axis):
     axis.set_ylim(10 ** low / 1.5, 10 ** high * 1.5)
 
 
+def write(figure, path):
+    figure.savefig(path, bbox_inches="tight", pad_inches=0.02)
+    figure.savefig(path.with_suffix(".pdf"), bbox_inches="tight", pad_inches=0.02, metadata={"CreationDate": None})
+
+
 def save(figure, directory, name):
     """Writes directory/name, a PNG file, and the same as PDF. Logarithmic axes without limits of
     their own show whole decades."""
@@ -263,8 +271,7 @@ def save(figure, directory, name):
             if not chosen:
                 whole_decades(axis)
     path = directory / name
-    figure.savefig(path, bbox_inches="tight")
-    figure.savefig(path.with_suffix(".pdf"), bbox_inches="tight", metadata={"CreationDate": None})
+    write(figure, path)
     plt.close(figure)
     print(f"wrote {path}, {path.with_suffix('.pdf')}")
 

@@ -21,11 +21,10 @@ from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, contact_na
                           history, in_length, in_stress, model_of, plt, table, use_units, wider,
                           with_unit)
 from model_figures import contact_cells, outputs, stresses
-from panels import Curve, Lines, Triangles, save_panels
+from panels import ROUND_OFF, ZERO, Curve, Lines, Triangles, save_panels
 from solution_figures import solution
 
 COLLOCATED = 3  # of law/reduction in model.h5
-SPENT = 1e-14  # errors of bases end here: what follows is round-off
 
 
 def kind_of(run):
@@ -46,7 +45,7 @@ def convergence(title, xlabel, ylabel, *curves):
 
 def along_size(title, xlabel, ylabel, error):
     """Errors with 0, 1, ... functions, to round-off; nothing where there are none."""
-    error = error[error > SPENT]
+    error = error[error > ZERO]
     return [convergence(title, xlabel, ylabel, (np.arange(len(error)), error, "", BLUE))
             ] if len(error) > 0 else []
 
@@ -66,7 +65,7 @@ def nitsche_panels(run):
                                 ("friction_matrix", "friction, tangent", ORANGE),
                                 ("friction_vector", "friction, residual", PURPLE)):
         error = curve.get(name, np.zeros(0))
-        error = error[error > SPENT]
+        error = error[error > ZERO]
         if len(error) > 0:
             terms.append((np.arange(len(error)), error, label, colour))
     if terms:
@@ -142,9 +141,11 @@ def pressure_curves(data, which):
                   Curve(over, reduced, "reduced " + what, colour)]
         errors.append(Curve(over, reduced - truth, what, colour))
     largest = of_peak(np.concatenate([curve.y for curve in errors]), data)
+    least = ZERO * np.abs(data["high_fidelity"]).max()
     x = in_length(name + ", reference domain")
     return [Lines("stress along the contact curve" + which, x, in_stress("stress"), marks),
-            Lines("error" + which + largest, x, in_stress("reduced less high-fidelity"), errors)]
+            Lines("error" + which + largest, x, in_stress("reduced less high-fidelity"), errors,
+                  least=least)]
 
 
 def pressure_panels(run, data):
@@ -161,7 +162,8 @@ def pressure_panels(run, data):
     return [Triangles("reduced, reference domain", points, cells, data["reduced"],
                       in_stress("pressure"), (0, data["high_fidelity"].max() or 1)),
             Triangles("error" + of_peak(error, data), points, cells, error,
-                      in_stress("reduced less high-fidelity"), (-bound, bound), "RdBu_r")]
+                      in_stress("reduced less high-fidelity"), (-bound, bound), "RdBu_r",
+                      least=ZERO * data["high_fidelity"].max())]
 
 
 def pressure(run):
@@ -255,8 +257,8 @@ def error_map_panels(run, data):
 def error_map(run):
     data = table(run, "error_map.csv")
     data = data[(data["enriched"] == data["enriched"].max()) & np.isfinite(data["u_mean"])]
-    if len(data) == 0:
-        print("error_map.png: left out, no pair has all its answers")
+    if len(data) < 2:
+        print("error_map.png: left out, fewer than two pairs have all their answers")
         return []
     return save_panels(run / "figures", "error_map.png", error_map_panels(run, data))
 
@@ -274,6 +276,10 @@ def mesh_quality_panels(run):
 
 
 def mesh_quality(run):
+    worst = table(run, "mesh_quality.csv")["max_aspect_ratio"]
+    if np.ptp(worst) <= ROUND_OFF * worst.max():
+        print(f"mesh_quality.png: left out, the largest aspect ratio is {worst.max():.3g} everywhere")
+        return []
     return save_panels(run / "figures", "mesh_quality.png", mesh_quality_panels(run))
 
 

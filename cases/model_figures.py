@@ -6,7 +6,7 @@ import h5py
 import numpy as np
 
 from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, contact_names, free_parameters,
-                          in_length, in_stress, plt, save, table, text_rows, wider, with_unit)
+                          in_length, in_stress, table, text_rows, wider, with_unit)
 from panels import ROUND_OFF, Banded, Curve, Lines, Triangles, save_panels
 
 PLACES = {"middle of the box": BLUE, "least normal force": GREEN, "largest normal force": ORANGE}
@@ -76,20 +76,8 @@ def outputs(run):
     panels, words = output_panels(run)
     if not panels:
         raise Missing(f"every output is the same everywhere: {words}")
-    columns = min(2, len(panels))
-    rows = -(-len(panels) // columns)
-    lines = len(panels[0].curves) + 1 + bool(words)
-    figure, axes = plt.subplots(rows, columns, squeeze=False, figsize=(2.6 * columns, 1.9 * rows + 0.17 * lines))
-    for axis, panel in zip(axes.flat, panels):
-        panel.draw(figure, axis)
-    for axis in axes.flat[len(panels):]:
-        axis.remove()
-    figure.tight_layout(rect=(0, 0, 1, 1 - 0.17 * lines / figure.get_figheight()))
     said = "along each parameter, the others at the middle of the box; bands: largest measured error"
-    handles = axes.flat[0].get_lines() if len(panels[0].curves) > 1 else []
-    figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0, 1), title="\n".join(filter(None, (said, words))),
-                  title_fontsize=7, fontsize=7, alignment="left", borderaxespad=0.2)
-    return save(figure, run / "figures", "outputs.png") or []
+    return save_panels(run / "figures", "outputs.png", panels, "\n".join(filter(None, (said, words))))
 
 
 def places_of(run):
@@ -104,6 +92,24 @@ def places_of(run):
     return rows, "\n".join(words)
 
 
+def training_pressures(run, rows):
+    """Number of a contact along a curve -> pressures of the training samples, a row each; nothing where
+    multipliers are not pressures at the places of stresses.csv, as by Nitsche's method."""
+    place, found, start = next(iter(rows.values())), {}, 0
+    samples = []
+    for path in sorted((run / "samples").glob("*.h5")):
+        with h5py.File(path, "r") as sample:
+            samples.append(sample["lambda"][()].ravel())
+    for number in np.unique(place["interface"]).astype(int):
+        size = np.sum(place["interface"] == number)
+        rubs = any(np.any(own["tangential"][own["interface"] == number]) for own in rows.values())
+        found[number] = [sample[start:start + size] for sample in samples]
+        start += size * (1 + rubs)
+    fits = all(len(sample) == start for sample in samples) and all(
+        pressure.min() >= -1e-6 * pressure.max() for pressures in found.values() for pressure in pressures)
+    return found if fits else {}
+
+
 def stress_panels(run, rows):
     """A panel for each contact along a curve; of a region one for each place."""
     cells, contacts, panels = contact_cells(run), contact_names(run), []
@@ -111,12 +117,16 @@ def stress_panels(run, rows):
         return [Triangles(place, np.column_stack([own["x"], own["y"]]), cells, own["pressure"],
                           in_stress("pressure"), (0, own["pressure"].max() or 1))
                 for place, own in rows.items()]
+    training = training_pressures(run, rows)
     for number in np.unique(rows[next(iter(rows))]["interface"]).astype(int):
-        curves, over = [], "x"
+        curves, over, behind = [], "x", training.get(number, [])
         for place, of_place in rows.items():
             own = of_place[of_place["interface"] == number]
             x, over = wider(np.column_stack([own["x"], own["y"]]))
             order = np.argsort(x)
+            curves += [Curve(x[order], pressure[order], "" if k else "training samples", "#cccccc", width=0.7)
+                       for k, pressure in enumerate(behind)]
+            behind = []
             curves.append(Curve(x[order], own["pressure"][order], place, PLACES[place]))
             if np.any(own["tangential"]):
                 curves.append(Curve(x[order], own["tangential"][order], "", PLACES[place], "--"))

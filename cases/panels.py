@@ -1,15 +1,18 @@
 """Panels of figures: what they show is plain data, which tests look at, and is drawn here."""
 
+import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 from matplotlib.ticker import MaxNLocator
+from matplotlib.transforms import ScaledTranslation
 
-from figure_tools import BLUE, GREY, label_plane, log_axis, plt, save
+from figure_tools import BLUE, COLUMN, GREY, LINE, WIDTH, label_plane, log_axis, plt, save
 
 ROUND_OFF = 1e-9  # of the size of values: what differs by less is a constant
-ZERO = 1e-15      # relative errors below are round-off
+ZERO = 1e-12      # relative errors below are round-off
+LETTERS = 30      # of a line in a panel
 
 
 @dataclass
@@ -28,7 +31,8 @@ class Curve:
 @dataclass
 class Lines:
     """Curves over axes with units. On a logarithmic axis values below `floor` are zero but for
-    round-off: the legend says so, and they are not drawn."""
+    round-off: the legend says so, and they are not drawn. On another one a panel of values that are all
+    below `least` is left out."""
 
     title: str
     xlabel: str
@@ -37,28 +41,42 @@ class Lines:
     log: bool = False
     floor: float = ZERO
     right: str = ""  # label of the axis at the right
+    least: float = 0
     projection = None
+    ratio = 0.75
+
+    def spent(self):
+        """Labels of curves of which nothing is drawn."""
+        return [curve.label for curve in self.curves if not np.any(np.isfinite(shown(curve, self)[0]))]
+
+    def empty(self):
+        return (len(self.spent()) == len(self.curves) or
+                max(np.nanmax(np.abs(curve.y)) for curve in self.curves) < self.least)
 
     def draw(self, _, axis):
         axes = {False: axis, True: axis.twinx() if self.right else axis}
         handles = []
         for curve in self.curves:
             y, label = shown(curve, self)
+            if not np.any(np.isfinite(y)):
+                continue
             handles += axes[curve.right].plot(curve.x, y, curve.style, color=curve.colour,
                                               label=label, linewidth=curve.width)
         if self.log:
             log_axis(axis, "", "", "")
         else:
             show_constants(axis)
-        axis.set_xlabel(self.xlabel)
-        axis.set_ylabel(self.ylabel)
+            axis.yaxis.set_major_locator(MaxNLocator(4))
+        axis.set_xlabel(fitting(self.xlabel))
+        axis.set_ylabel(fitting(self.ylabel, 26))
         if self.right:
             show_constants(axes[True])
+            axes[True].yaxis.set_major_locator(MaxNLocator(4))
             axes[True].set_ylabel(self.right, color=self.curves[-1].colour)
             axes[True].spines["right"].set_visible(True)
             axes[True].grid(False)
-        if all(np.array_equal(curve.x, np.round(curve.x)) for curve in self.curves):
-            axis.xaxis.set_major_locator(MaxNLocator(integer=True))
+        whole = all(np.array_equal(curve.x, np.round(curve.x)) for curve in self.curves)
+        axis.xaxis.set_major_locator(MaxNLocator(4, integer=whole))
         handles = [handle for handle in handles if handle.get_label()[:1] not in ("", "_")]
         if handles:
             legend_below(axis, handles)
@@ -73,17 +91,25 @@ class Banded:
     xlabel: str
     curves: list
     error: float
+    projection = None
+    ratio = 0.7
+
+    def empty(self):
+        return False
 
     def draw(self, _, axis):
+        handles = []
         for curve in self.curves:
-            axis.plot(curve.x, curve.y, color=curve.colour, label=curve.label, linewidth=curve.width)
+            handles += axis.plot(curve.x, curve.y, color=curve.colour, label=curve.label, linewidth=curve.width)
             axis.fill_between(curve.x, curve.y - self.error, curve.y + self.error, color=curve.colour,
                               alpha=0.25, linewidth=0)
         show_constants(axis)
         axis.xaxis.set_major_locator(MaxNLocator(4))
         axis.yaxis.set_major_locator(MaxNLocator(4))
         axis.set_xlabel(self.xlabel)
-        axis.set_ylabel(self.ylabel)
+        axis.set_ylabel(fitting(self.ylabel, 24))
+        if len(handles) > 1:
+            legend_below(axis, handles)
 
 
 @dataclass
@@ -98,7 +124,16 @@ class Triangles:
     limits: tuple
     colours: str = "Blues"
     flat: bool = False
+    least: float = 0
+    frame: tuple = None  # corners of what is shown, where that is not all
     projection = None
+
+    @property
+    def ratio(self):
+        return ratio_of(self.points if self.frame is None else np.array(self.frame))
+
+    def empty(self):
+        return np.abs(self.values).max() < self.least
 
     def draw(self, figure, axis):
         shading = {"facecolors": self.values} if self.flat else {"shading": "gouraud"}
@@ -107,7 +142,9 @@ class Triangles:
                                 rasterized=True, **shading)
         filled.set_clim(*self.limits)
         label_plane(axis)
-        figure.colorbar(filled, ax=axis, shrink=0.75, label=self.label, format="%.3g")
+        if self.ratio > 1.1:
+            axis.locator_params(axis="x", nbins=2)
+        colour_bar(figure, axis, filled, self.label, self.ratio)
 
 
 @dataclass
@@ -117,6 +154,10 @@ class Drawn:
     title: str
     draw: Callable
     projection: str | None = None
+    ratio: float = 1  # of its height to its width
+
+    def empty(self):
+        return False
 
 
 def shown(curve, panel):
@@ -132,9 +173,42 @@ def shown(curve, panel):
     return y, ", ".join(words)
 
 
+def fitting(text, letters=LETTERS):
+    return "\n".join(textwrap.wrap(text, letters, break_long_words=False))
+
+
+def ratio_of(points):
+    """Height over width of a picture of the points, within what a page has room for."""
+    wide, high = np.ptp(points[:, :2], axis=0)
+    return float(np.clip(high / wide, 0.3, 1.6))
+
+
+def inches_from(axis):
+    """Inches from the lower left corner of the axis."""
+    return axis.figure.dpi_scale_trans + ScaledTranslation(0, 0, axis.transAxes)
+
+
+def colour_bar(figure, axis, filled, label, ratio):
+    """Below what is wide, at the right of what is high."""
+    below = ratio < 1.3
+    place = (axis.inset_axes((0, -0.62, 1.5, 0.09), transform=inches_from(axis)) if below else
+             axis.inset_axes((1.08, 0.05, 0.1, 0.9)))
+    bar = figure.colorbar(filled, cax=place, orientation="horizontal" if below else "vertical", format="%.3g")
+    bar.locator = MaxNLocator(3 if below else 4)
+    bar.update_ticks()
+    bar.set_label(fitting(label, 34 if below else 26))
+    place.grid(False)
+
+
 def legend_below(axis, handles):
     """One line for each curve below the axis, where it hides none."""
-    axis.legend(handles=handles, loc="upper left", bbox_to_anchor=(-0.1, -0.16), borderpad=0)
+    for handle in handles:
+        handle.set_label(fitting(handle.get_label()))
+    labels = [handle.get_label() for handle in handles]
+    lines = 1 + axis.get_xlabel().count("\n") + 4 * len(axis.child_axes)  # a colour bar
+    axis.legend(handles=handles, loc="upper left", bbox_to_anchor=(-0.3, -0.36 - LINE * lines),
+                bbox_transform=inches_from(axis), borderpad=0, borderaxespad=0,
+                ncols=2 if len(labels) > 3 and max(map(len, labels)) < 13 else 1)
 
 
 def show_constants(axis):
@@ -148,29 +222,104 @@ def show_constants(axis):
         axis.set_ylim(min(1.2 * low, -least), max(1.2 * high, least))
 
 
+def legend_height(labels, columns):
+    """Inches, of its longest column."""
+    rows = -(-len(labels) // columns)
+    return max(sum(0.05 + LINE * (1 + label.count("\n")) for label in labels[k:k + rows])
+               for k in range(0, len(labels), rows))
+
+
+def looks(handle):
+    return tuple(str(getattr(handle, "get_" + what, str)()) for what in
+                 ("color", "linestyle", "marker", "linewidth", "facecolor"))
+
+
+def share_legend(figure, axes):
+    """One legend of all panels, where no two of its entries look the same; returns its height in
+    inches."""
+    legends = [axis.get_legend() for axis in axes if axis.get_legend()]
+    handles = {text.get_text(): handle for legend in legends
+               for handle, text in zip(legend.legendHandles, legend.get_texts())}
+    if len(axes) < 2 or not handles or len(set(map(looks, handles.values()))) < len(handles):
+        return 0
+    for legend in legends:
+        legend.remove()
+    columns = min(2, len(handles))
+    figure.legend(handles=list(handles.values()), labels=list(handles), loc="lower left", ncols=columns,
+                  borderaxespad=0.2)
+    return legend_height(list(handles), columns) + 0.1
+
+
+def add_axes(figure, panels):
+    """Two in a row; the last of an odd number has a row of its own."""
+    columns = min(2, len(panels))
+    rows = -(-len(panels) // columns)
+    grid = figure.add_gridspec(rows, columns)
+    alone = len(panels) - 1 if columns == 2 and len(panels) % 2 else -1
+    axes = [figure.add_subplot(grid[k // columns, :] if k == alone else grid[k // columns, k % columns],
+                               projection=panel.projection) for k, panel in enumerate(panels)]
+    return grid, axes
+
+
+def row_heights(panels, axes, width):
+    """In inches: what is drawn, the text around it and its legend."""
+    columns = min(2, len(panels))
+
+    def below(axis):
+        legend = axis.get_legend()
+        return legend_height([text.get_text() for text in legend.get_texts()], legend._ncols) if legend else 0
+
+    return [max(0.9 + 0.68 * width / columns * panel.ratio + below(axis)
+                for panel, axis in zip(panels[k:k + columns], axes[k:k + columns]))
+            for k in range(0, len(panels), columns)]
+
+
 def figure_of(panels, subtitle=""):
     """A figure, its panels marked (a), (b), ..., and a line for each that could not be drawn: the
     others do not wait for it."""
-    columns = len(panels) if len(panels) <= 3 else (len(panels) + 1) // 2
-    rows = -(-len(panels) // columns)
-    figure = plt.figure(figsize=(4.2 * columns, 4.2 * rows), constrained_layout=True)
-    failed = []
-    for k, panel in enumerate(panels):
-        axis = figure.add_subplot(rows, columns, k + 1, projection=panel.projection)
+    figure, failed = plt.figure(constrained_layout=True), []
+    width = WIDTH if len(panels) > 1 else COLUMN
+    grid, axes = add_axes(figure, panels)
+    for k, (panel, axis) in enumerate(zip(panels, axes)):
         try:
             panel.draw(figure, axis)
         except Exception as error:  # whatever its data is: the reason is told
             failed.append(f"{panel.title}: {error or type(error).__name__}")
             axis.clear()
             axis.text(0.5, 0.5, "cannot be drawn", ha="center", transform=axis.transAxes)
-        axis.set_title((f"({chr(ord('a') + k)}) " if len(panels) > 1 else "") + panel.title,
+        letters = 2 * LETTERS if axis.get_subplotspec().colspan == range(2) else (
+            LETTERS if isinstance(panel, (Lines, Banded)) else 24)
+        axis.set_title(fitting((f"({chr(ord('a') + k)}) " if len(panels) > 1 else "") + panel.title, letters),
                        loc="left")
-    figure.suptitle(subtitle, fontsize=8, color=GREY)
+    words = "\n".join(fitting(line, int(width * 13)) for line in subtitle.splitlines())
+    below, above = share_legend(figure, axes), LINE * (1 + words.count("\n")) + 0.05 if words else 0
+    heights = row_heights(panels, axes, width)
+    height = sum(heights) + below + above
+    figure.set_size_inches(width, height)
+    grid.set_height_ratios(heights)
+    figure.get_layout_engine().set(rect=(0, below / height, 1, 1 - (below + above) / height))
+    figure.text(0.01, 1 - 0.04 / height, words, color=GREY, ha="left", va="top")
     return figure, failed
+
+
+def with_values(panels):
+    """Panels that are not empty, and what is said of the others and of curves that are not drawn."""
+    words = {}
+    for panel in panels:
+        if panel.empty():
+            words[f"{panel.title}: left out, round-off"] = None
+        elif isinstance(panel, Lines):
+            words.update({f"{', '.join(filter(None, [panel.title, label]))}: left out, below {panel.floor:.0e}": None
+                          for label in panel.spent()})
+    return [panel for panel in panels if not panel.empty()], list(words)
 
 
 def save_panels(directory, name, panels, subtitle=""):
     """Writes the figure; returns a line for each panel that could not be drawn."""
-    figure, failed = figure_of(panels, subtitle)
+    panels, words = with_values(panels)
+    if not panels:
+        print(f"{name}: left out, {'; '.join(words) or 'it has no panels'}")
+        return []
+    figure, failed = figure_of(panels, "\n".join(filter(None, [subtitle, *words])))
     save(figure, directory, name)
     return failed

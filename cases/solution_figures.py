@@ -5,15 +5,16 @@ from functools import partial
 
 import numpy as np
 from matplotlib.patches import Rectangle
-from matplotlib.transforms import ScaledTranslation
 
-from figure_tools import (GREEN, ORANGE, Missing, in_length, in_stress, parameters_of, read_grid,
+from figure_tools import (GREEN, ORANGE, PURPLE, UNITS, Missing, in_length, in_stress, parameters_of, read_grid,
                           wider)
-from panels import Curve, Drawn, Lines, Triangles, save_panels
+from panels import Curve, Drawn, Lines, Triangles, legend_below, ratio_of, save_panels
 
 SHADES = "YlGnBu"
 WIDTHS = 5  # of the edges of a mesh; those that round to zero are left out
-GAP_ROUND_OFF = 1e-12  # m: a gap below is closed
+CLOSED = 1e-9  # of the largest displacement: a smaller gap is closed
+VISIBLE = 0.05  # of the size of the bodies: displacements are drawn no smaller
+LEAST_ZONE = 0.12  # of the length of a contact curve: half of a zoom is no less
 
 
 def outline(points, cells):
@@ -41,8 +42,8 @@ def contact_grids(path, grid):
 
 def draw_membrane(circle, grid, figure, axis):
     u = grid.of_nodes["u"]
-    surface = axis.plot_trisurf(grid.points[:, 0], grid.points[:, 1], u, triangles=grid.cells,
-                                cmap="viridis", linewidth=0, antialiased=False, rasterized=True)
+    axis.plot_trisurf(grid.points[:, 0], grid.points[:, 1], u, triangles=grid.cells, cmap="viridis", linewidth=0,
+                      antialiased=False, rasterized=True)
     floor = u.min() - 0.25 * np.ptp(u)
     for segment in circle:
         axis.plot(segment[:, 0], segment[:, 1], floor, color=ORANGE, linewidth=1.2)
@@ -52,8 +53,8 @@ def draw_membrane(circle, grid, figure, axis):
     axis.set_xlabel(in_length("x"))
     axis.set_ylabel(in_length("y"))
     axis.set_zlabel(in_length("u"), labelpad=0)
-    axis.tick_params(labelsize=7, pad=0)
-    figure.colorbar(surface, ax=axis, shrink=0.6, pad=0.1, label=in_length("u"))
+    axis.tick_params(pad=0)
+    axis.locator_params(nbins=3)
 
 
 def membrane_panels(grid, contacts):
@@ -84,73 +85,133 @@ def draw_mesh(axis, positions, grid, size):
     draw_segments(axis, outline(positions, grid.cells), 0.7, 1)
 
 
-def positions_of(grid):
-    return (grid.points + grid.of_nodes["u"])[:, :2]
+def scale_of(grid, contacts):
+    """What displacements are multiplied by where they are drawn: 1 where they can be seen, else 1, 2 or 5
+    times a power of ten, so that bodies with a gap at rest do not overlap."""
+    size, largest = np.ptp(grid.points, axis=0).max(), np.linalg.norm(grid.of_nodes["u"], axis=1).max()
+    wanted = min([VISIBLE * size / (largest or size), *(1 + 0.01 * size / max(gap_at_rest(grid, curve), 1e-9 * size)
+                                            for curve in contacts.values())])
+    if wanted < 2:
+        return 1
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return int(power * max(lead for lead in (1, 2, 5) if lead * power <= wanted))
 
 
-def draw_deformed(frames, grid, figure, axis):
-    """Deformed bodies in 2D, shaded by |u|; the frames of other panels."""
-    positions, u = positions_of(grid), np.linalg.norm(grid.of_nodes["u"], axis=1)
-    Triangles("", positions, grid.cells, u, in_length("|u|"), (0, u.max() or 1), SHADES).draw(figure, axis)
+def positions_of(grid, scale):
+    return (grid.points + scale * grid.of_nodes["u"])[:, :2]
+
+
+def faced(curve, scale):
+    """The points that face those of a contact curve: what is closed is drawn closed."""
+    return positions_of(curve, scale) + scale * curve.of_nodes["to_partner"][:, :2]
+
+
+def partners_of(grid, curve):
+    """Nodes of other bodies that face those of a contact curve; none where a rigid surface does."""
+    body = np.zeros(len(grid.points), int)
+    body[grid.cells] = grid.of_cells["body"].astype(int)[:, None]
+    own = body[np.argmin(np.sum((grid.points - curve.points[0]) ** 2, axis=1))]
+    others = np.flatnonzero(body != own)
+    if len(others) == 0:
+        return others
+    away = np.linalg.norm(faced(curve, 1)[:, None] - positions_of(grid, 1)[others], axis=2)
+    near = others[np.argmin(away, axis=1)]
+    spacing = np.linalg.norm(np.ptp(curve.points, axis=0)) / len(curve.points)
+    return near if np.median(away.min(axis=1)) < 4 * spacing else others[:0]
+
+
+def gap_at_rest(grid, curve):
+    """Largest along the normal between bodies where they now press on each other; of a rigid surface
+    how much it varies, which would bend what is drawn of it."""
+    partners, pressure = partners_of(grid, curve), curve.of_nodes["pressure"]
+    if len(partners) == 0:
+        return np.ptp(np.sum((curve.of_nodes["u"] + curve.of_nodes["to_partner"]) * curve.of_nodes["normal"], axis=1))
+    gap = np.sum((grid.points[partners] - curve.points) * curve.of_nodes["normal"], axis=1)
+    return np.abs(gap[pressure >= 0.05 * pressure.max()]).max()
+
+
+def draw_rigid(grid, contacts, scale, axis):
+    """Rigid surfaces where they are at these parameters: handles of a legend."""
+    lines = [axis.plot(*faced(curve, scale).T, color=ORANGE, linewidth=1.8, label="rigid surface")[0]
+             for curve in contacts.values() if len(partners_of(grid, curve)) == 0]
+    return lines[:1]
+
+
+def von_mises(grid, inside):
+    """Label with what of the stress is drawn, and the end of its colours."""
+    stress = grid.of_cells["von_mises"]
+    top = stress[inside].max() if inside.any() else stress.max()
+    more = f"; elsewhere up to {stress.max():.3g}" if stress.max() > 1.005 * top else ""
+    return in_stress("von Mises stress at centres of cells" + more), (0, top or 1)
+
+
+def draw_deformed(frames, contacts, scale, grid, figure, axis):
+    """Deformed bodies in 2D, shaded by |u|, by the stress where no other panel has it; the frames of
+    other panels."""
+    positions = positions_of(grid, scale)
+    if frames:
+        u = np.linalg.norm(grid.of_nodes["u"], axis=1)
+        filled = Triangles("", positions, grid.cells, u, in_length("|u|"), (0, u.max() or 1), SHADES)
+    else:
+        filled = Triangles("", positions, grid.cells, grid.of_cells["von_mises"],
+                           *von_mises(grid, np.ones(len(grid.cells), bool)), SHADES, flat=True)
+    filled.draw(figure, axis)
     draw_mesh(axis, positions, grid, np.ptp(positions, axis=0).max())
     for low, high in frames:
-        axis.add_patch(Rectangle(low, *(high - low), fill=False, edgecolor=ORANGE, linewidth=1))
+        axis.add_patch(Rectangle(low, *(high - low), fill=False, edgecolor=PURPLE, linewidth=1.2, zorder=5))
+    handles = draw_rigid(grid, contacts, scale, axis)
+    if handles:
+        legend_below(axis, handles)
 
 
 def draw_bodies(figure, axis, path):
-    draw_deformed([], read_grid(path), figure, axis)
-    axis.set_title("deformed bodies", loc="left")
+    grid = read_grid(path)
+    contacts = contact_grids(path, grid)
+    scale = scale_of(grid, contacts)
+    draw_deformed([], contacts, scale, grid, figure, axis)
+    axis.set_title(title_of(grid, scale), loc="left")
 
 
-def contact_zone(curve):
+def title_of(grid, scale):
+    words = "deformed bodies" if grid.of_cells["body"].max() > 1 else "deformed body"
+    return f"{words}, displacements x {scale:g}"
+
+
+def contact_zone(curve, scale):
     """Centre and half width of the part of the deformed contact curve that carries pressure; of the
     whole curve where none does. By Nitsche's method there is some stress everywhere."""
-    positions = positions_of(curve)
-    pressure = curve.of_nodes["pressure"]
+    positions, pressure = positions_of(curve, scale), curve.of_nodes["pressure"]
     pressed = pressure > 0.05 * pressure.max()
-    zone = positions[pressed] if pressed.sum() > 1 else positions
+    zone = positions[pressed] if pressed.any() else positions
     low, high = zone.min(axis=0), zone.max(axis=0)
-    return (low + high) / 2, (high - low).max() / 2
+    return (low + high) / 2, max((high - low).max() / 2, LEAST_ZONE * np.ptp(positions, axis=0).max())
 
 
-def frame_of(grid, curve):
-    """Corners of the part of the bodies that is shown around the contact on a curve."""
-    positions = positions_of(grid)
-    centre, half = contact_zone(curve)
-    margin = 0.02 * np.ptp(positions, axis=0).max()
-    low = np.maximum(centre - (2 * half, 1.8 * half), positions.min(axis=0) - (margin, 3 * margin))
-    high = np.minimum(centre + (2 * half, 1.8 * half), positions.max(axis=0) + (margin, 3 * margin))
-    return low, high
+def frame_of(grid, curve, scale):
+    """Corners of what is shown around the contact on a curve: of the bodies and what they face."""
+    positions = np.concatenate([positions_of(grid, scale), faced(curve, scale)])
+    centre, half = contact_zone(curve, scale)
+    low, high = centre - (1.6 * half, 1.3 * half), centre + (1.6 * half, 1.3 * half)
+    inside = positions[np.all((low <= positions) & (positions <= high), axis=1)]
+    return np.maximum(low, inside.min(axis=0) - 0.15 * half), np.minimum(high, inside.max(axis=0) + 0.15 * half)
 
 
-def support_line(grid, curve, reach):
-    """The rigid support of the one body, within `reach` of the middle of the contact: the deformed
-    contact curve, moved along the normal by the gap that is left."""
-    tangent = np.gradient(curve.points[:, :2], axis=0)
-    normal = np.column_stack([tangent[:, 1], -tangent[:, 0]])
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
-    inwards = grid.points[:, :2].mean(axis=0) - curve.points[:, :2].mean(axis=0)
-    normal *= -np.sign(normal.mean(axis=0) @ inwards)
-    line = positions_of(curve) + curve.of_nodes["gap"][:, None] * normal
-    return line[np.linalg.norm(line - contact_zone(curve)[0], axis=1) < reach]
+def is_part(frame, grid, scale):
+    """A zoom shows less than half of the bodies."""
+    return np.prod(frame[1] - frame[0]) < 0.5 * np.prod(np.ptp(positions_of(grid, scale), axis=0))
 
 
-def draw_zoom(frame, curve, grid, figure, axis):
-    """Von Mises stress on the deformed bodies, in the frame; of one body its rigid support."""
-    positions, stress = positions_of(grid), grid.of_cells["von_mises"]
-    (low, high), (_, half) = frame, contact_zone(curve)
+def draw_zoom(frame, curve, scale, grid, figure, axis):
+    """Von Mises stress on the deformed bodies, in the frame, and the rigid surface there."""
+    positions, (low, high) = positions_of(grid, scale), frame
     middles = positions[grid.cells].mean(axis=1)
     inside = np.all((low < middles) & (middles < high), axis=1)
-    top = stress[inside].max() if inside.any() else stress.max()
-    Triangles("", positions, grid.cells, stress, in_stress("von Mises stress"), (0, top or 1),
-              SHADES, flat=True).draw(figure, axis)
-    draw_mesh(axis, positions, grid, 4 * half)
-    if grid.of_cells["body"].max() == 1:
-        line = support_line(grid, curve, 1.6 * half)
-        handles = axis.plot(line[:, 0], line[:, 1], color=ORANGE, linewidth=1.6, label="rigid support")
-        below = axis.transAxes + ScaledTranslation(0, -0.5, figure.dpi_scale_trans)  # inches
-        axis.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0),
-                    bbox_transform=below)
+    label, limits = von_mises(grid, inside)
+    shown = np.any(np.all((low < positions[grid.cells]) & (positions[grid.cells] < high), axis=2), axis=1) | inside
+    Triangles("", positions, grid.cells[shown], grid.of_cells["von_mises"][shown], label, limits, SHADES, flat=True,
+              frame=frame).draw(figure, axis)
+    draw_mesh(axis, positions, grid, 2 * (high - low).max())
+    draw_rigid(grid, {"": curve}, scale, axis)
     axis.set_xlim(low[0], high[0])
     axis.set_ylim(low[1], high[1])
 
@@ -163,29 +224,37 @@ def along(grid, name):
     return x, grid.of_nodes[name]
 
 
-def contact_panel(curve, title):
+def contact_panel(curve, title, displacement):
     """Pressure, with friction the tangential stress, and the gap along a contact curve."""
-    curves = [Curve(*along(curve, "pressure"), "pressure")]
+    where = "on edges" if "pressure" in curve.of_cells else "at nodes"
+    x, y = along(curve, "pressure")
+    title += f", peak {y.max():.3g} {UNITS['stress']}"
+    curves = [Curve(x, y, f"pressure {where}")]
     if "tangential_stress" in curve.of_nodes:
         curves.append(Curve(*along(curve, "tangential_stress"), "tangential stress", GREEN))
     x, gap = along(curve, "gap")
-    closed = np.abs(gap) < GAP_ROUND_OFF
-    curves.append(Curve(x, np.where(closed, 0, gap), "gap (right)", ORANGE, right=True))
+    closed = np.abs(gap) < CLOSED * displacement
+    if closed.all():
+        title += ", gap closed everywhere"
+    else:
+        curves.append(Curve(x, np.where(closed, 0, gap), "gap (right)" + ", 0 where closed" * closed.any(), ORANGE,
+                            "--", right=True))
     return Lines(title, in_length(wider(curve.points)[1] + ", undeformed"), in_stress("stress"), curves,
-                 right=in_length("gap"))
+                 right="" if closed.all() else in_length("gap"))
 
 
 def body_panels(grid, contacts):
-    frames = [frame_of(grid, curve) for curve in contacts.values()]
-    panels = [Drawn("deformed bodies" if grid.of_cells["body"].max() > 1 else "deformed body",
-                    partial(draw_deformed, frames, grid))]
-    several = len(contacts) > 1
-    for frame, (name, curve) in zip(frames, contacts.items()):
-        panels.append(Drawn(f"stress, {name}" if several else "stress at the contact",
-                            partial(draw_zoom, frame, curve, grid)))
-    return panels + [contact_panel(curve, f"stress and gap, {name}" if several else
-                                   "stress and gap along the contact curve")
-                     for name, curve in contacts.items()]
+    scale, several = scale_of(grid, contacts), len(contacts) > 1
+    largest = np.linalg.norm(grid.of_nodes["u"], axis=1).max()
+    frames = {name: frame_of(grid, curve, scale) for name, curve in contacts.items()}
+    frames = {name: frame for name, frame in frames.items() if is_part(frame, grid, scale)}
+    whole = partial(draw_deformed, frames.values(), contacts, scale, grid)
+    zooms = [Drawn(f"stress, {name}" if several else "stress at the contact",
+                   partial(draw_zoom, frame, contacts[name], scale, grid), ratio=ratio_of(np.array(frame)))
+             for name, frame in frames.items()]
+    return [Drawn(title_of(grid, scale), whole, ratio=ratio_of(positions_of(grid, scale))), *zooms,
+            *(contact_panel(curve, f"stress and gap, {name}" if several else
+                            "stress and gap", largest) for name, curve in contacts.items())]
 
 
 def solution_panels(path):
