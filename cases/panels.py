@@ -144,6 +144,8 @@ class Triangles:
         label_plane(axis)
         if self.ratio > 1.1:
             axis.locator_params(axis="x", nbins=2)
+        if self.ratio < 0.6:
+            axis.yaxis.set_major_locator(MaxNLocator(2, min_n_ticks=1))
         colour_bar(figure, axis, filled, self.label, self.ratio)
 
 
@@ -269,7 +271,7 @@ def row_heights(panels, axes, width):
         legend = axis.get_legend()
         return legend_height([text.get_text() for text in legend.get_texts()], legend._ncols) if legend else 0
 
-    return [max(0.9 + 0.68 * width / columns * panel.ratio + below(axis)
+    return [max(0.9 + 0.68 * width / columns * panel.ratio + below(axis) + 0.2 * (panel.ratio < 0.6)
                 for panel, axis in zip(panels[k:k + columns], axes[k:k + columns]))
             for k in range(0, len(panels), columns)]
 
