@@ -83,7 +83,10 @@ def differs(key, value, expected, scale):
     formulation, model, _, output = key
     difference = abs(value - expected)
     if output == "iterations":  # round-off may decide about the last, and about the order of pivots
-        return not difference <= (1 if model == "full" else max(1, expected))
+        # Loops of Nitsche's method with Coulomb's law converge linearly: the roller took 21 steps by one
+        # processor and 23 by another, to answers that agree in all digits.
+        few = 2 if "nitsche" in formulation else 1
+        return not difference <= (few if model == "full" else max(1, expected))
     own_error = WITHIN_THEIR_ERROR.get((formulation, model), 0)
     if output == "quadrature_residual":  # an estimate of an error, of which the first digits count
         return not difference <= (1e-2 if own_error else max(1e-8, 1e-2 * expected))
