@@ -221,7 +221,7 @@ def figure_of(bodies, case):
 def draw(path, case, png):
     use_units(path)
     figure = figure_of(Bodies(path), case)
-    figure.savefig(png, dpi=150, bbox_inches="tight", pad_inches=0.02)
+    figure.savefig(png, dpi=150, bbox_inches="tight", pad_inches=0.02, pil_kwargs={"optimize": True})
     plt.close(figure)
     print(f"wrote {png}")
 
