@@ -97,12 +97,12 @@ def hertz_line(force):
 
 
 def partial_slip(force, share):
-    """Cattaneo's shear stress has this sum, and moves all of the stick zone alike."""
-    a = 2 * sqrt(force / pi)
+    """Cattaneo's shear stress has this sum, and moves all of the stick zone alike; R = 1000."""
+    a = 2 * sqrt(1000 * force / pi)
     c = a * sqrt(1 - share)
     def shear(x):
         outer = sqrt(max(0, 1 - (x / a)**2))
-        return 0.3 * sqrt(force / pi) * (outer - c / a * sqrt(max(0, 1 - (x / c)**2)))
+        return 0.3 * a / 2000 * (outer - c / a * sqrt(max(0, 1 - (x / c)**2)))
     total = quad(shear, -a, a, points=[-c, c])[0]
     outer = slope_of(lambda x: sqrt(max(0, 1 - (x / a)**2)), a, c / 2)
     inner = slope_of(lambda x: c / a * sqrt(max(0, 1 - (x / c)**2)), c, c / 2)
@@ -167,8 +167,10 @@ def values():
         yield "torsion", test, torsion(twist)
     for test, force in (("light", 0.0025), ("heavy", 0.01)):
         yield "hertz_line", test, hertz_line(force)
-    yield "partial_slip", "half", partial_slip(0.01, 0.5)
-    yield "partial_slip", "most", partial_slip(0.01, 0.75)
+    yield "partial_slip", "half", partial_slip(pi / 4000, 0.5)
+    yield "partial_slip", "most", partial_slip(pi / 4000, 0.75)
+    line = hertz_line(pi / 4)  # of R = 1: a = 1
+    yield "partial_slip", "pressure", {"width": line["width"], "peak_pressure": line["peak_pressure"] / 1000}
     for test, a in (("light", 0.05), ("heavy", 0.1)):
         yield "hertz_point", test, hertz_point(a)
     yield "cone", "unit", cone()

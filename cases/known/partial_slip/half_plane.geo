@@ -1,0 +1,19 @@
+// Half of a disk of radius 50 below y = 0, fine from x = -1.5 to 1.5 of its upper side.
+DefineConstant[edges = 100]; // of the contact boundary, 3 long
+h = 3 / edges;
+Point(1) = {0, 0, 0, h};
+Point(2) = {1.5, 0, 0, h};
+Point(3) = {50, 0, 0, 5};
+Point(4) = {0, -50, 0, 5};
+Point(5) = {-50, 0, 0, 5};
+Point(6) = {-1.5, 0, 0, h};
+Line(1) = {6, 2};
+Line(2) = {2, 3};
+Circle(3) = {3, 1, 4};
+Circle(4) = {4, 1, 5};
+Line(5) = {5, 6};
+Curve Loop(1) = {1:5};
+Plane Surface(1) = {1};
+Physical Curve("contact") = {1};
+Physical Curve("far") = {3, 4};
+Physical Surface("body") = {1};
