@@ -271,7 +271,6 @@ private:
     result.has_others = result.converged && best_.negative && laws_.tangents == 1 && !jump(laws_);
     best_.x = admissible(laws_, std::move(best_.x));
     if (!result.converged || kept_.key != best_sets_.key()) kept_.system.reset();
-    kept_.sets = best_sets_;
     if (!result.converged) {
       best_ = evaluate(h_, q_, std::move(best_.x));
       result.residual = judge(h_.diagonal(), laws_, best_, best_sets_, options_.tolerance).residual;
@@ -281,6 +280,7 @@ private:
     result.w = std::move(best_.w);
     describe(result, laws_, best_sets_);
     result.reason = reason(outcome, result);
+    kept_.sets = std::move(best_sets_);
     return result;
   }
 
@@ -342,7 +342,7 @@ struct FrictionSolver::Parts {
   /// The last answer(), and the system of its active sets once that is asked for.
   struct Answered {
     Vector x, start;
-    ActiveSets sets;
+    std::optional<ActiveSets> sets; ///< empty: without friction, where x tells them
     std::optional<System> tangent{};
   };
   std::optional<Answered> last;
@@ -362,9 +362,7 @@ FrictionAnswer FrictionSolver::answer(const Vector &q, const Vector &start, bool
   parts_->last.reset();
   FrictionAnswer answer = parts_->run(start, by_rule, false);
   if (!answer.converged) return answer;
-  const NodeLaws &laws = parts_->laws;
-  parts_->last = {answer.x, answer.start,
-                  laws.friction() ? *parts_->kept.sets : contact_sets(laws, answer.x)};
+  parts_->last = {answer.x, answer.start, std::move(parts_->kept.sets)};
   return answer;
 }
 
@@ -372,7 +370,9 @@ NearAnswer FrictionSolver::near(const Vector &left, const NodeLaws &laws) const 
   if (!parts_->last) throw failure("friction: there is no answer to go on from");
   Parts::Answered &last = *parts_->last;
   const LazyColumns &h = parts_->h;
-  if (!last.tangent) last.tangent.emplace(h, parts_->laws, last.sets);
+  if (!last.tangent)
+    last.tangent.emplace(h, parts_->laws,
+                         last.sets ? *last.sets : contact_sets(parts_->laws, last.x));
   State point = last.tangent->near(h, last.x, parts_->laws, left, laws);
   if (!point.x.allFinite()) throw failure("friction: what touches does not tell its tractions");
   const Vector start = smooth_start(h.diagonal(), laws, point);

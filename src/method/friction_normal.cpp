@@ -26,8 +26,11 @@ LcpResult normal_contact(LazyColumns &h, const Vector &q, const NodeLaws &laws, 
       node = laws.normal[node];
     h.require(which);
     Matrix result(laws.nodes(), std::ssize(which));
-    for (Index k = 0; k < result.cols(); ++k)
-      result.col(k) = h.column(which[k])(laws.normal);
+    for (Index k = 0; k < result.cols(); ++k) {
+      const auto column = h.column(which[k]);
+      for (Index i = 0; i < result.rows(); ++i) // twice as fast as an expression with indices
+        result(i, k) = column[laws.normal[i]];
+    }
     return result;
   };
   std::vector<Index> guess;
