@@ -1,32 +1,10 @@
 #include "rbvi/core/output_units.hpp"
 
 #include <algorithm>
-#include <map>
 
 namespace rbvi {
 
 namespace {
-
-Size size_of_column(std::optional<double> Outputs::*value) {
-  using enum Size;
-  static const std::vector<std::pair<std::optional<double> Outputs::*, Size>> sizes{
-      {&Outputs::energy, energy},
-      {&Outputs::normal_force, force},
-      {&Outputs::tangential_force, force},
-      {&Outputs::reaction, force},
-      {&Outputs::horizontal_reaction, force},
-      {&Outputs::contact_measure, area},
-      {&Outputs::contact_half_width, length},
-      {&Outputs::stick_half_width, length},
-      {&Outputs::peak_pressure, pressure},
-      {&Outputs::centre_pressure, pressure},
-      {&Outputs::min_u, length},
-      {&Outputs::max_penetration, length},
-      {&Outputs::friction_violation, pressure}};
-  const auto found =
-      std::ranges::find(sizes, value, &std::pair<std::optional<double> Outputs::*, Size>::first);
-  return found == sizes.end() ? none : found->second;
-}
 
 const OutputForm *form_of(const Scene &scene, const OutputColumn &column) {
   if (column.value != nullptr) return nullptr;
@@ -57,8 +35,8 @@ Dimension size_of(const Scene &scene, Size size) {
 
 std::string unit_of(const Scene &scene, const OutputColumn &column) {
   if (const OutputForm *form = form_of(scene, column)) return form->unit;
-  if (!scene.units || column.value == nullptr) return "";
-  return unit_in(*scene.units, size_of(scene, size_of_column(column.value)));
+  if (!scene.units) return "";
+  return unit_in(*scene.units, size_of(scene, column.size));
 }
 
 std::string says_of(const Scene &scene, const OutputColumn &column) {

@@ -40,40 +40,45 @@ namespace {
 /// What several contacts make of it together.
 enum class OfContacts { none, sum, largest };
 
-/// A number of Outputs, its column ("": it has none), what it is, its definition.
+/// A number of Outputs, its column ("": it has none), what it is, its definition, its unit.
 struct OutputRow {
   std::optional<double> Outputs::*value;
   const char *column;
   OutputKind kind;
   OfContacts together;
   const char *says;
+  Size size = Size::none;
 };
 
 const std::vector<OutputRow> &output_rows() {
   using enum OutputKind;
   using enum OfContacts;
   static const std::vector<OutputRow> rows{
-      {&Outputs::energy, "energy", quantity, none, "J(u) = a(u, u) / 2 - f(u)"},
-      {&Outputs::normal_force, "normal_force", quantity, sum, "integral of the contact pressure"},
+      {&Outputs::energy, "energy", quantity, none, "J(u) = a(u, u) / 2 - f(u)", Size::energy},
+      {&Outputs::normal_force, "normal_force", quantity, sum, "integral of the contact pressure",
+       Size::force},
       {&Outputs::tangential_force, "tangential_force", quantity, sum,
-       "integral of the magnitude of the tangential stress"},
+       "integral of the magnitude of the tangential stress", Size::force},
       {&Outputs::reaction, "reaction", quantity, sum,
-       "vertical force of contact on the (first) body"},
+       "vertical force of contact on the (first) body", Size::force},
       {&Outputs::horizontal_reaction, "horizontal_reaction", quantity, sum,
-       "horizontal force of contact on the (first) body, to the right"},
+       "horizontal force of contact on the (first) body, to the right", Size::force},
       {&Outputs::contact_measure, "contact_measure", measure, sum,
        "length or area in contact: weights of the nodes with pressure (of the membrane with "
-       "-lumped each by its pressure over the largest beside it)"},
-      {&Outputs::contact_half_width, "contact_half_width", measure, none,
-       "half of contact_measure"},
+       "-lumped each by its pressure over the largest beside it)",
+       Size::area},
+      {&Outputs::contact_half_width, "contact_half_width", measure, none, "half of contact_measure",
+       Size::length},
       {&Outputs::stick_half_width, "stick_half_width", measure, none,
-       "half of the length in contact below the bound of friction"},
+       "half of the length in contact below the bound of friction", Size::length},
       {&Outputs::peak_pressure, "peak_pressure", quantity, largest,
-       "largest pressure at a node, wherever it is"},
+       "largest pressure at a node, wherever it is", Size::pressure},
       {&Outputs::centre_pressure, "centre_pressure", quantity, none,
        "pressure at the middle of a curve in one open piece, from a fit over the inner 12 % of the "
-       "contact"},
-      {&Outputs::min_u, "min_u", quantity, none, "smallest displacement of the whole field"},
+       "contact",
+       Size::pressure},
+      {&Outputs::min_u, "min_u", quantity, none, "smallest displacement of the whole field",
+       Size::length},
       {&Outputs::contact_nodes, "contact_nodes", check, sum,
        "nodes (-multiplier p0: pairs of edges) with pressure"},
       {&Outputs::stick_nodes, "stick_nodes", check, sum,
@@ -86,9 +91,9 @@ const std::vector<OutputRow> &output_rows() {
       {&Outputs::quadrature_residual, "quadrature_residual", check, none,
        "Nitsche reduced: residual of the integrals over the whole curve"},
       {&Outputs::max_penetration, "max_penetration", check, largest,
-       "largest penetration at a node, held or not"},
+       "largest penetration at a node, held or not", Size::length},
       {&Outputs::friction_violation, "friction_violation", check, largest,
-       "largest tangential stress beyond its bound"},
+       "largest tangential stress beyond its bound", Size::pressure},
       {&Outputs::law_error_normal, "law_error_normal", check, none,
        "Nitsche: |sigma_n - [P_n]_-| / |sigma_n| over the nodes of all curves (4.83)"},
       {&Outputs::law_error_tangential, "law_error_tangential", check, none,
@@ -121,7 +126,7 @@ const std::vector<OutputColumn> &output_columns() {
   static const std::vector<OutputColumn> columns = [] {
     std::vector<OutputColumn> result;
     for (const OutputRow &row : output_rows())
-      if (*row.column != 0) result.push_back({row.column, row.value, row.kind, row.says});
+      if (*row.column != 0) result.push_back({row.column, row.value, row.kind, row.says, row.size});
     return result;
   }();
   return columns;
@@ -230,7 +235,7 @@ OutputColumn output_column(const std::string &name) {
   const auto found = std::ranges::find(output_columns(), name, &OutputColumn::name);
   return found != output_columns().end()
              ? *found
-             : OutputColumn{name, nullptr, OutputKind::quantity, "of the case"};
+             : OutputColumn{name, nullptr, OutputKind::quantity, "of the case", Size::none};
 }
 
 namespace {

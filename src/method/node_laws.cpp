@@ -40,7 +40,7 @@ bool NodeLaws::has_tangents() const {
 
 bool NodeLaws::friction() const {
   for (Index i = 0; i < nodes(); ++i)
-    if (has_tangent(i) && bound[i].acts()) return true;
+    if (friction_at(i).acts()) return true;
   return false;
 }
 
@@ -86,9 +86,8 @@ void check(const NodeLaws &laws) {
 }
 
 Vector bounds_of(const NodeLaws &laws, const Vector &x) {
-  return Vector::NullaryExpr(laws.nodes(), [&](Index i) {
-    return laws.has_tangent(i) ? laws.bound[i].value(x[laws.normal[i]]) : 0.0;
-  });
+  return Vector::NullaryExpr(laws.nodes(),
+                             [&](Index i) { return laws.friction_at(i).value(x[laws.normal[i]]); });
 }
 
 Vector admissible(const NodeLaws &laws, Vector x) {

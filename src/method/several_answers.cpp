@@ -7,7 +7,7 @@ namespace rbvi {
 
 bool bounds_follow_pressure(const NodeLaws &laws) {
   for (Index i = 0; i < laws.nodes(); ++i)
-    if (laws.has_tangent(i) && laws.bound[i].follows_pressure()) return true;
+    if (laws.friction_at(i).follows_pressure()) return true;
   return false;
 }
 

@@ -72,7 +72,8 @@ def check_triangles(check, panel, name):
 
 def check_drawn(check, panels, name):
     """Every panel is drawn, over axes that do not end at round-off."""
-    drawn, _ = with_values(panels)
+    drawn, words = with_values(panels)
+    check.that(len(panels) > 0 and (len(drawn) == len(panels) or words), f"{name}: panels are left out without a word")
     if not drawn:
         return
     figure, failed = figure_of(drawn)
@@ -154,8 +155,8 @@ def check_answer(check, run):
         half = "two_disks" in run.name  # a quarter of each disk is solved
         force *= 2 if half else 1
         for panel in lines:
-            check.that(np.all(np.diff(panel.curves[-1].x) >= 0) or
-                       np.all(np.diff(panel.curves[-1].x) <= 0), f"{run.name}: x goes back")
+            steps = np.diff(panel.curves[-1].x)  # zero where a pressure is constant on edges
+            check.that(np.any(steps) and (np.all(steps >= 0) or np.all(steps <= 0)), f"{run.name}: x goes back")
     for contact in contact_grids(run / "u.vtu", grid).values():
         check_partners(check, contact, run.name)
     tolerance = FORCE_TOLERANCE["nitsche" if "nitsche" in run.name else "multipliers"]

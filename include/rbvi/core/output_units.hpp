@@ -6,10 +6,7 @@
 
 namespace rbvi {
 
-/// What a column of outputs is; `none`: a number without a unit.
-enum class Size { none, energy, force, area, length, pressure };
-
-/// Plane bodies are those of a unit of thickness; an area is that of contact.
+/// Plane bodies are those of a unit of thickness.
 Dimension size_of(const Scene &scene, Size size);
 
 /// "" without units, or where it is not known.

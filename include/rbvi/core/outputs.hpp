@@ -88,11 +88,15 @@ enum class OutputKind {
   check     ///< residuals, violations, iterations, seconds: of the answer itself
 };
 
+/// `none`: a number without a unit; area: of contact.
+enum class Size { none, energy, force, area, length, pressure };
+
 struct OutputColumn {
   std::string name;
   std::optional<double> Outputs::*value; ///< null: one of Outputs::named
   OutputKind kind;
-  const char *says; ///< its definition, one line
+  const char *says;       ///< its definition, one line
+  Size size = Size::none; ///< of a named output core/output_units.hpp knows its unit
   /// Unset where the answer has no such value.
   std::optional<double> of(const Outputs &outputs) const;
 };
