@@ -1,15 +1,23 @@
 #!/usr/bin/env python3
-"""pages.py RBVI options|schema: the pages that `RBVI -help -json` is the source of, on standard output.
+"""pages.py RBVI options|schema|keys [--write]: the pages that `RBVI -help -json` is the source of.
 
     python3 cases/pages.py build/bin/rbvi options > cases/OPTIONS.md
     python3 cases/pages.py build/bin/rbvi schema > cases/case.schema.json
+    python3 cases/pages.py build/bin/rbvi keys --write
 
-To be run where the folder cases is.
+The first two are printed. Of CASE_FILE.md the tables of keys alone are made, between the text that stands
+there: without --write they are compared, and the exit status is 1 where one is another. To be run where
+the folder cases is.
 """
 
 import json
+import re
 import subprocess
 import sys
+from pathlib import Path
+
+CASE_FILE = Path(__file__).resolve().parent / "CASE_FILE.md"
+KEYS = re.compile(r"(<!-- keys of (.*?) -->\n).*?(<!-- end of the keys -->)", re.DOTALL)
 
 INTRODUCTION = """\
 # Options
@@ -25,7 +33,7 @@ begins with `case: FILE` (a run leaves such a file in its directory); two bounds
 A flag without a value means yes.
 
 The words of this page are explained where a group of options begins, and in the
-[glossary](README.md#glossary). Numbers in brackets are equations of Niakh (2022): u is the
+[glossary](GLOSSARY.md). Numbers in brackets are equations of Niakh (2022): u is the
 displacement, lambda the multipliers (pressure and friction stress), A and B are the matrices of the
 forms a and b, and mu is a parameter, the list of all numbers that vary.
 """
@@ -81,29 +89,7 @@ Newton's method solves it; a reduced model integrates these terms by one of thre
 OF_CASES = """
 ## Case files
 
-A case file (YAML) is a scene: the body, what holds, loads and touches it, and the parameters of all
-that. `rbvi new NAME` writes one to begin with, `rbvi check FILE` tells every defect of one with its
-line and column, and which terms are exact; with `-run` it proves the answers below `tests:`.
-[case.schema.json](case.schema.json) has these keys as a JSON Schema, for editors.
-
-**Numbers are expressions** in parameters, in the names of `let:` and, where a point is meant, in x, y
-(and nx, ny, the normal, in tractions): `+ - * / ^`, comparisons, `and or not`, `condition ? a : b`, pi,
-`sqrt cbrt exp log log10 log2 sin cos tan asin acos atan sinh cosh tanh abs sign floor ceil pow atan2
-min max hypot`. Quote an expression that holds `: `, `?` or, inside of `[ ]`, a comma. What occurs in a
-term decides what becomes of it: where the domain does not move, or moves by a similarity (stiffness), a
-term that separates into functions of parameters and of the point is exact; every other one is
-interpolated. A parameter without a range is a constant, which a run may change (`-young 20`) or free
-(`-young 10,30`). With `units:` a number may have a unit, and becomes one of that system: `205 GPa`;
-also behind the name of a parameter, `-young '1 GPa,2 GPa'`. Numbers of a parameter without a unit are
-in its `unit:`, in the file and in options, tables, queries and answers; expressions see its value in
-the units of the case. Dimensions are checked as far as they are known. A parameter has a name of its
-own: neither that of an option of rbvi nor a column of its tables nor a word of expressions (`pi`). `mu`
-alone is allowed, as coefficients of friction go by it: `-mu` is the point, and `-mu mu=0.3` the
-parameter there; it has no option.
-
-**A path** such as `contact.support.friction` leads to a value. `-set mesh.edges=200` puts one there;
-`choices:` are options of the case whose alternatives do; a variant (`-variant NAME`) does so before all
-of these. An empty value takes away what is there.
+The keys of a case file have [a page of their own](CASE_FILE.md).
 """
 
 OF_SCENES = """
@@ -115,9 +101,10 @@ Each scene has options and parameters of its own. A parameter is an option, too:
 box, no value and no query may leave the range of validity. `rbvi -help -case FILE` also prints what a
 mesh for the scene must have.
 
-Some scenes share options. `-degree` is that of the finite elements for the displacement. `-lumped yes`
-takes the contact integrals b and g by values at the vertices alone (vertex quadrature). `-formulation`
-writes contact with multipliers (mixed) or without them, by Nitsche's method (nitsche).
+Some scenes share options, which their case files define. `-degree` is that of the finite elements for the
+displacement. `-lumped yes` takes the contact integrals b and g by values at the vertices alone (vertex
+quadrature). `-formulation` writes contact with multipliers (mixed) or without them, by Nitsche's method
+(nitsche). In a case of your own these are the keys `degree`, `lumped` and `formulation`.
 """
 
 OF_PETSC = """
@@ -135,7 +122,7 @@ Linear solvers are direct; iterative ones (`-hf_ksp_type cg`) have rtol 1e-13, t
 shows one stage per step; its own options are for the command line alone.
 
 SLEPc solves the eigenproblems of the projected greedy algorithm. If b(mu) is a multiple of one fixed
-form ("B only scales"), one singular value decomposition replaces them all. Each rank has objects of its
+form (rbvi says that B only scales), one singular value decomposition replaces them all. Each rank has objects of its
 own for its share of the parameters, of type lapack: this type returns all pairs of a small matrix,
 which iterative types do not do for clustered values (fewer than all are an error). `-infsup_eps_` alone
 is iterative, by objects of all ranks: where that is faster (m^3 > 1e5 n for m multipliers and n
@@ -212,9 +199,22 @@ def tables_of_keys(keys):
     return text
 
 
+def refreshed_keys(page, keys):
+    """The page with the tables of the keys of each section between its marks."""
+    sections = {}
+    for key in keys:
+        sections.setdefault(key["table"].split(".")[0] or "the top", []).append(key)
+    told = KEYS.findall(page)
+    if sorted(name for _, name, _ in told) != sorted(sections):
+        sys.exit(f"{CASE_FILE.name} has marks for the keys of {', '.join(name for _, name, _ in told)}; "
+                 f"the sections are {', '.join(sections)}")
+    return KEYS.sub(lambda mark: mark[1] + tables_of_keys(sections[mark[2]]) + "\n" + mark[3], page)
+
+
 def section_of(scene):
-    text = f"\n### {scene['name']}\n\n{scene['summary']}.\n" + head(OPTION_HEAD)
-    text += "".join(map(option_row, scene["options"]))
+    text = f"\n### {scene['name']}\n\n{scene['summary']}.\n"
+    if scene["options"]:
+        text += head(OPTION_HEAD) + "".join(map(option_row, scene["options"]))
     text += head(["parameter", "unit", "box", "value while fixed", "range of validity", ""])
     for p in scene["parameters"]:
         text += row([code("-" + p["name"]), p["unit"], p["box"], p["value"], p["valid"],
@@ -232,9 +232,9 @@ def table_of_solvers(solvers):
 def options_page(dump):
     online = head(["option", "value", ""]) + "".join(
         row([code("--" + option["name"]), option["values"], option["help"]]) for option in dump["online"])
-    return (INTRODUCTION + tables_of_groups(dump["options"]) + OF_CASES + tables_of_keys(dump["keys"])
-            + OF_SCENES + "".join(map(section_of, dump["scenes"])) + OF_PETSC
-            + table_of_solvers(dump["solvers"]) + OF_PETSC_MORE + OF_ONLINE + online)
+    return (INTRODUCTION + tables_of_groups(dump["options"]) + OF_CASES + OF_SCENES
+            + "".join(map(section_of, dump["scenes"])) + OF_PETSC + table_of_solvers(dump["solvers"])
+            + OF_PETSC_MORE + OF_ONLINE + online)
 
 
 def json_object(members):
@@ -312,9 +312,17 @@ def schema(dump):
                        + members_of_table(dump["keys"], "")) + "\n"
 
 
-def main(rbvi, page):
+def main(rbvi, page, *words):
     dump = json.loads(subprocess.run([rbvi, "-help", "-json"], check=True, capture_output=True).stdout)
-    sys.stdout.write({"options": options_page, "schema": schema}[page](dump))
+    if page != "keys":
+        sys.stdout.write({"options": options_page, "schema": schema}[page](dump))
+        return
+    told = CASE_FILE.read_text(encoding="utf-8")
+    made = refreshed_keys(told, dump["keys"])
+    if words == ("--write",):
+        CASE_FILE.write_text(made, encoding="utf-8")
+    elif made != told:
+        sys.exit("CASE_FILE.md has other keys: python3 cases/pages.py build/bin/rbvi keys --write")
 
 
 if __name__ == "__main__":

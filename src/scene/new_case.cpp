@@ -5,7 +5,7 @@
 namespace rbvi {
 
 std::string new_case() {
-  return R"(# A block that is pushed onto a floor with friction and sheared. All keys: cases/OPTIONS.md, Case files.
+  return R"(# A block that is pushed onto a floor with friction and sheared. All keys: cases/CASE_FILE.md.
 rbvi: 1
 says: block on a floor with friction
 physics: plane_strain
@@ -35,7 +35,7 @@ validate: random:20:2
 std::string new_case(const std::string &mesh, const std::string &parts, const std::string &imposed,
                      const std::string &contact, double depth) {
   const std::string range = "[" + short_number(depth / 10) + ", " + short_number(depth) + "]";
-  return "# All keys: cases/OPTIONS.md, Case files. " + parts + R"(
+  return "# All keys: cases/CASE_FILE.md. " + parts + R"(
 rbvi: 1
 physics: plane_strain
 mesh: {file: )" +

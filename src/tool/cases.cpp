@@ -59,7 +59,7 @@ std::string case_of_options(const std::vector<CaseSetting> &options, const std::
   throw bad_input(file + " is a list of options and names no case: a case file holds its scene " +
                   "('rbvi: 1', 'physics: ...', its options below 'options:'), a list of options " +
                   "begins with 'case: FILE', such as 'case: cases/" +
-                  (scene == nullptr ? "NAME" : scene->value) + "/case.yaml' (cases/README.md)");
+                  (scene == nullptr ? "NAME" : scene->value) + "/case.yaml' (cases/CASE_FILE.md)");
 }
 
 bool is_own(const std::string &scene, const Registry &registry) {

@@ -262,7 +262,7 @@ void check_variants(const MeasureOptions &options) {
 void command_check(const MeasureOptions &options, const SolveOptions &solve) {
   const MPI_Comm world = PETSC_COMM_WORLD;
   if (solve.run_tests && options.scene.tests.empty())
-    throw bad_input("this case has no 'tests:' that -run could prove (cases/README.md)");
+    throw bad_input("this case has no 'tests:' that -run could prove (cases/CASE_FILE.md)");
   collectively(world, [&] { check_variants(options); });
   std::vector<NamedFile> outputs = files_of_solution(solve.vtu, options.scene);
   for (NamedFile &file : files_of_check(solve.vtu, options.scene))

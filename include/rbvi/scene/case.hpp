@@ -1,5 +1,5 @@
 // Scenes from files: a case file (YAML) says the bodies, what holds, loads and touches them, and
-// the parameters of all that. cases/README.md describes the format; src/scene/keys.cpp is its
+// the parameters of all that. cases/CASE_FILE.md describes the format; src/scene/keys.cpp is its
 // table.
 #pragma once
 
