@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+"""quoted_numbers.py ROOT [--write]: numbers that a page quotes from a table of another page are those there.
+
+quoted_numbers.csv, one row per number: the page, the words before the number on it (* is any word), the page of the table,
+the first cells of its row (joined by a bar; * for all rows), its column, which number of the cell (1, 2,
+..., or the least or largest of all rows). With --write numbers that differ are written as the table has them.
+"""
+
+import csv
+import re
+import sys
+from pathlib import Path
+
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+def tables(text):
+    """Head and rows of each table, as lists of cells."""
+    for block in re.findall(r"(?:^\|.*\n)+", text + "\n", re.MULTILINE):
+        rows = [[cell.strip().replace("`", "") for cell in line.strip().strip("|").split("|")]
+                for line in block.splitlines()]
+        if len(rows) > 2:
+            yield rows[0], rows[2:]
+
+
+def cells(text, row, column):
+    """Those of a column of the first table that has it and the rows."""
+    for head, rows in tables(text):
+        wanted = [cells for cells in rows if row == "*" or "|".join(cells).startswith(row)]
+        if column in head and wanted:
+            return [cells[head.index(column)] for cells in wanted]
+    return []
+
+
+def quoted(text, row, column, which):
+    numbers = [found for cell in cells(text, row, column) for found in [NUMBER.findall(cell)] if found]
+    if not numbers:
+        return None
+    if which in ("least", "largest"):
+        return {"least": min, "largest": max}[which]((found[0] for found in numbers), key=float)
+    return numbers[0][int(which) - 1].lstrip("+")
+
+
+def main(root, *words):
+    wrong, pages = [], {}
+    with open(Path(__file__).with_suffix(".csv"), encoding="utf-8", newline="") as file:
+        table = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    for quote in table:
+        page, source = quote["page"], (root / quote["source"]).read_text(encoding="utf-8")
+        text = pages.setdefault(page, (root / page).read_text(encoding="utf-8"))
+        number = quoted(source, quote["row"], quote["column"], quote["which"])
+        before = r"\s+".join(r"\S+" if word == "*" else re.escape(word) for word in quote["before"].split())
+        told = re.search(rf"{before}\s+({NUMBER.pattern})", text)
+        if number is None or told is None:
+            wrong.append(f"{page}: '{quote['before']}': " + ("no such words" if number else
+                         f"{quote['source']} has no {quote['column']} of {quote['row']}"))
+        elif told.group(1) != number:
+            wrong.append(f"{page}: '{quote['before']}' {told.group(1)}: {quote['source']} has {number}")
+            pages[page] = text[:told.start(1)] + number + text[told.end(1):]
+    if words == ("--write",):
+        for page, text in pages.items():
+            (root / page).write_text(text, encoding="utf-8")
+    elif wrong:
+        wrong.append("written by tests/docs/quoted_numbers.py . --write, where the words are there")
+    print("\n".join(wrong) or f"{len(table)} quoted numbers are those of their tables")
+    return int(bool(wrong))
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1]).resolve(), *sys.argv[2:]))
