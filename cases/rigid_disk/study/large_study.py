@@ -179,7 +179,7 @@ def sizes(runs):
     rows = [[f"{row['N']:.0f}", f"{row['R']:.0f}", short(row["u_max"]), short(row["u_floor_max"]),
              short(row["lambda_max"]), short(row["lambda_floor_max"])]
             for row in error_map(runs)]
-    return markdown("The published way over N and R, decorrelated",
+    return markdown("The published way over N and R, without supremizers",
                     ["N", "R", "u", "u, projection", "lambda", "lambda, projection"], rows)
 
 

@@ -40,7 +40,7 @@ DEFAULT = ["-multiplier_reduction", "condensed", "-pod_tolerance", "1e-7"]
 REDUCTIONS = {
     "condensed": ["-multiplier_reduction", "condensed"],
     "condensed, no responses": ["-multiplier_reduction", "condensed", "-response_tolerance", "0"],
-    "collocated, mended": ["-multiplier_exact", "yes", *BEST],
+    "collocated, made exact": ["-multiplier_exact", "yes", *BEST],
     "collocated": BEST,
 }
 COLLOCATED = {"text": "(30, 20, 20)", "published": "published tolerances"}

@@ -97,7 +97,7 @@ def dual_bases(runs):
                      short(s["lambda_mean"]), short(s["lambda_max"]), short(s["u_max"]),
                      f"{1e3 * s['seconds']:.2f}"])
     return markdown("Dual bases, offline-enriched to sigma <= 0.3, intersection",
-                    ["basis and tolerance", "N + S", "R", "training error", "lambda floor",
+                    ["basis and tolerance", "N + S", "R", "training error", "lambda, best of the basis",
                      "lambda mean", "lambda max", "u max", "ms"], rows)
 
 
