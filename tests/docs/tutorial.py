@@ -32,7 +32,7 @@ def is_like(printed, shown):
     return all(abs(float(a) - float(b)) <= 1e-6 * max(abs(float(a)), 1e-3) for a, b in pairs)
 
 
-def missing_line(shown, printed):
+def missing_line(shown, printed, like=is_like):
     """The first line of the page that is not where it should be; nothing if all are."""
     lines, anywhere = iter(printed), False
     for line in shown:
@@ -40,7 +40,7 @@ def missing_line(shown, printed):
             anywhere = True
             continue
         for found in lines:
-            if is_like(found, line):
+            if like(found, line):
                 break
             if not anywhere:
                 return line
@@ -50,13 +50,13 @@ def missing_line(shown, printed):
     return None
 
 
-def run(lines, scratch, environment):
-    """The commands of a block, and the first line that one does not print."""
+def run(lines, scratch, environment, like=is_like):
+    """The number of commands of a block that print its lines; nothing where one does not."""
     commands = [k for k, line in enumerate(lines) if line.startswith("$ ")]
     for begin, end in zip(commands, commands[1:] + [len(lines)]):
         done = subprocess.run(lines[begin][2:], shell=True, cwd=scratch, env=environment, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
-        line = missing_line(lines[begin + 1:end], done.stdout.splitlines())
+        line = missing_line(lines[begin + 1:end], done.stdout.splitlines(), like)
         if done.returncode != 0 or line is not None:
             print(f"{lines[begin]}\nends with {done.returncode}, and lacks: {line}\n{done.stdout}")
             return None

@@ -28,9 +28,9 @@ std::function<PointMap> composed(const std::function<PointMap> &outer,
 ///
 ///   distance = position - (y - pivot) . n.
 ///
-/// `normal`: without tilt; `tilt`: radians, counterclockwise about the point that lies `position`
-/// from the pivot along the normal; empty: none. Throws bad_input for a normal whose length is not
-/// 1. Evaluation throws failure where position or tilt is not finite.
+/// `normal`: without tilt; `tilt`: radians, by which the line turns counterclockwise about the
+/// pivot; empty: none. Throws bad_input for a normal whose length is not 1. Evaluation throws
+/// failure where position or tilt is not finite.
 std::function<Surface> plane_surface(const Point &normal, const Point &pivot,
                                      const std::function<Coefficient> &position,
                                      const std::function<Coefficient> &tilt = {});
