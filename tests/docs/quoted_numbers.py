@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""quoted_numbers.py ROOT [--write]: numbers that a page quotes from a table of another page are those there.
+"""quoted_numbers.py ROOT [--write]: numbers and tables that a page quotes from another page are those there.
+
+A table below a mark "<!-- table of PAGE: HEADING -->" is the first one below that heading of that page.
 
 quoted_numbers.csv, one row per number: the page, the words before the number on it (* is any word), the page of the table,
 the first cells of its row (joined by a bar; * for all rows), its column, which number of the cell (1, 2,
@@ -11,6 +13,7 @@ import re
 import sys
 from pathlib import Path
 
+TABLE = re.compile(r"(<!-- table of (\S+): (.*?) -->\n)((?:\|.*\n)+)")
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
@@ -41,12 +44,34 @@ def quoted(text, row, column, which):
     return numbers[0][int(which) - 1].lstrip("+")
 
 
+def with_tables(root, text):
+    """The page with the tables of others as they are there."""
+    def table_there(mark):
+        page = (root / mark[2]).read_text(encoding="utf-8")
+        below = re.search(rf"^#+ {re.escape(mark[3])}\n(?:(?!#).*\n)*?((?:\|.*\n)+)", page, re.MULTILINE)
+        if below is None:
+            sys.exit(f"{mark[2]} has no table below '{mark[3]}'")
+        return mark[1] + below[1]
+    return TABLE.sub(table_there, text)
+
+
+def quoted_tables(root, pages):
+    """What is another table, by page; `pages` has them as they should be."""
+    for path in sorted(root.glob("cases/**/*.md")):
+        page, text = str(path.relative_to(root)), path.read_text(encoding="utf-8")
+        pages[page] = with_tables(root, text)
+        wrong = sum(old != new for old, new in zip(TABLE.findall(text), TABLE.findall(pages[page])))
+        if wrong:
+            yield f"{page}: {wrong} tables are not those that they name"
+
+
 def main(root, *words):
-    wrong, pages = [], {}
+    pages = {}
+    wrong = list(quoted_tables(root, pages))
     with open(Path(__file__).with_suffix(".csv"), encoding="utf-8", newline="") as file:
         table = list(csv.DictReader(line for line in file if not line.startswith("#")))
     for quote in table:
-        page, source = quote["page"], (root / quote["source"]).read_text(encoding="utf-8")
+        page, source = quote["page"], pages.get(quote["source"]) or (root / quote["source"]).read_text(encoding="utf-8")
         text = pages.setdefault(page, (root / page).read_text(encoding="utf-8"))
         number = quoted(source, quote["row"], quote["column"], quote["which"])
         before = r"\s+".join(r"\S+" if word == "*" else re.escape(word) for word in quote["before"].split())
