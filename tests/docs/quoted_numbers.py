@@ -3,9 +3,9 @@
 
 A table below a mark "<!-- table of PAGE: HEADING -->" is the first one below that heading of that page.
 
-quoted_numbers.csv, one row per number: the page, the words before the number on it (* is any word), the page of the table,
-the first cells of its row (joined by a bar; * for all rows), its column, which number of the cell (1, 2,
-..., or the least or largest of all rows). With --write numbers that differ are written as the table has them.
+quoted_numbers.csv, one row per number: the page, the words before the number on it (* is any word), the page
+of the table, the first cells of its row (joined by a bar), its column, which number of the cell. With --write
+what differs is written as the table has it.
 """
 
 import csv
@@ -26,22 +26,14 @@ def tables(text):
             yield rows[0], rows[2:]
 
 
-def cells(text, row, column):
-    """Those of a column of the first table that has it and the rows."""
-    for head, rows in tables(text):
-        wanted = [cells for cells in rows if row == "*" or "|".join(cells).startswith(row)]
-        if column in head and wanted:
-            return [cells[head.index(column)] for cells in wanted]
-    return []
-
-
 def quoted(text, row, column, which):
-    numbers = [found for cell in cells(text, row, column) for found in [NUMBER.findall(cell)] if found]
-    if not numbers:
-        return None
-    if which in ("least", "largest"):
-        return {"least": min, "largest": max}[which]((found[0] for found in numbers), key=float)
-    return numbers[0][int(which) - 1].lstrip("+")
+    """That number of the cell in the first table that has the row and the column; nothing if none has."""
+    for head, rows in tables(text):
+        for cells in rows:
+            if column in head and "|".join(cells).startswith(row):
+                numbers = NUMBER.findall(cells[head.index(column)])
+                return numbers[int(which) - 1].lstrip("+") if len(numbers) >= int(which) else None
+    return None
 
 
 def with_tables(root, text):
@@ -60,7 +52,10 @@ def quoted_tables(root, pages):
     for path in sorted(root.glob("cases/**/*.md")):
         page, text = str(path.relative_to(root)), path.read_text(encoding="utf-8")
         pages[page] = with_tables(root, text)
-        wrong = sum(old != new for old, new in zip(TABLE.findall(text), TABLE.findall(pages[page])))
+        found = TABLE.findall(text)
+        wrong = sum(old != new for old, new in zip(found, TABLE.findall(pages[page])))
+        if len(found) < text.count("<!-- table of "):
+            yield f"{page}: a mark has no table below it"
         if wrong:
             yield f"{page}: {wrong} tables are not those that they name"
 
