@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """same_answers.py BIN OUT: answers depend on the parameter and on what the model was made of alone.
 
-Of several answers to a law the rule of the page OUTPUTS.md chooses one. Every case and variant is reduced on few parameters by one rank and by two. Both models answer the same
+Of several answers to a law the rule of the page ANSWERS.md chooses one. Every case and variant is reduced on few parameters by one rank and by two. Both models answer the same
 queries, one of them also in the reverse order.
 """
 
