@@ -49,6 +49,7 @@ def main(root, *places):
     if wrong:
         print("\n".join(f"the first {FIRST} lines of README.md: {one}" for one in wrong))
         return 1
+    print(f"the first {FIRST} lines of README.md are a picture, a case, {COMMANDS} commands and their output")
     if not places:
         return 0
     programs, scratch = Path(places[0]).resolve(), Path(places[1])
