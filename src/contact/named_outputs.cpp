@@ -308,6 +308,7 @@ void add_named_outputs(const Scene &scene, const Contact &contact, const FullMu 
   std::vector<std::optional<std::vector<ContactLine>>> of(contact.interfaces.size());
   for (std::size_t k = 0; k < scene.outputs.size(); ++k) {
     const OutputForm &form = scene.outputs[k];
+    if (!is_asked(sources.only, form.name)) continue;
     double value = 0;
     if (has_cells(form)) {
       const auto output = static_cast<int>(k);

@@ -238,6 +238,17 @@ OutputColumn output_column(const std::string &name) {
              : OutputColumn{name, nullptr, OutputKind::quantity, "of the case", Size::none};
 }
 
+bool is_asked(const std::vector<std::string> &only, const std::string &name) {
+  return only.empty() || std::ranges::find(only, name) != only.end();
+}
+
+Outputs asked_of(Outputs outputs, const std::vector<std::string> &only) {
+  for (const OutputColumn &column : output_columns())
+    if (!is_asked(only, column.name)) outputs.*column.value = std::nullopt;
+  if (!only.empty()) outputs.interfaces.clear();
+  return outputs;
+}
+
 namespace {
 
 std::string end_warning(const std::string &who) {

@@ -80,6 +80,13 @@ std::vector<std::string> split(const std::string &text, char separator) {
   return parts;
 }
 
+std::vector<std::string> names_in(const std::string &text) {
+  std::vector<std::string> names = split(text, ',');
+  for (std::string &name : names)
+    name = trimmed(name);
+  return names;
+}
+
 double parse_number(const std::string &text, const std::string &what) {
   std::string digits = trimmed(text);
   if (digits.empty()) throw bad_input(what + " is empty: a number is needed");

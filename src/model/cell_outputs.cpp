@@ -69,12 +69,15 @@ bool fits(const OutputModel &outputs, const Scene &scene, Index cells) {
   });
 }
 
-CellOutputs::CellOutputs(const OutputModel &model, const Scene &scene)
+CellOutputs::CellOutputs(const OutputModel &model, const Scene &scene,
+                         const std::vector<std::string> &only)
     : model_(model), scene_(scene) {
+  const auto asked = [&](int output) { return is_asked(only, scene.outputs[output].name); };
   for (int output = 0; output < std::ssize(scene.outputs); ++output)
-    if (auto sum = separated_reaction(scene, output, model.cells))
+    if (auto sum = asked(output) ? separated_reaction(scene, output, model.cells) : std::nullopt)
       reactions_[output] = {*sum, sum->rows * model.basis};
-  others_ = restricted(model, scene, [&](int output) { return !reactions_.contains(output); });
+  others_ = restricted(model, scene,
+                       [&](int output) { return asked(output) && !reactions_.contains(output); });
 }
 
 Vector imposed_at(const Scene &scene, const FullMu &mu, const Matrix &nodes,

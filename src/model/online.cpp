@@ -161,7 +161,8 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, const QueryOptions &option
 OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOptions &given)
     : model_(model), scene_(with_imposed_loads(std::move(scene))),
       imposed_energy_(rbvi::imposed_energy(scene_)), contact_(contact_of(model, scene_)),
-      dual_basis_(model.contact.dual_basis.sparseView()), cell_outputs_(model.outputs, scene_),
+      dual_basis_(model.contact.dual_basis.sparseView()), only_(given.only),
+      cell_outputs_(model.outputs, scene_, only_),
       contact_shares_(contact_shares(scene_, model.outputs.cells, nodes_of(model.contact))) {
   check_terms_of(model.body.a, scene_.a, scene_.parameters, "a");
   check_terms_of(model.body.f, scene_.f, scene_.parameters, "f");
@@ -273,7 +274,7 @@ void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vec
   };
   add_named_outputs(scene_, contact_, solution.mu,
                     {contact_shares_, of_interface, cell_outputs_.at(solution.mu, solution.u),
-                     solution.least_pressure * std::max(0.0, lambda.maxCoeff())},
+                     solution.least_pressure * std::max(0.0, lambda.maxCoeff()), only_},
                     lambda, outputs);
   if (faces_surfaces) add_gap_error(scene_, contact_, solution.mu, of_interface, lambda, outputs);
 }

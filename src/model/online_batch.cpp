@@ -265,7 +265,7 @@ void answer_many(const OnlineArguments &arguments, const std::vector<OnlineSolve
   tally.contact_points = material_points(solver.contact());
   const Outputs like = example_outputs(solver.model(), [&](const Mu &mu) {
     ReducedAnswer unused;
-    return answer(solver, mu, arguments, unused);
+    return asked_of(answer(solver, mu, arguments, unused), arguments.asked());
   });
   TableFile file(to_file ? arguments.out : "", out);
   std::optional<TableFile> trace_file;

@@ -70,6 +70,7 @@ void check_combination(const OnlineArguments &given) {
   if (!given.fmu.empty() && !given.fmu.ends_with(".fmu"))
     throw bad_input("--fmu is " + given.fmu + ": the name of a unit ends with .fmu");
   if (given.gradient && !one && !many) throw bad_input("--gradient needs --mu or --queries");
+  if (!given.only.empty() && !one && !many) throw bad_input("--only needs --mu or --queries");
   if (given.warm && !many) throw bad_input("--warm needs --queries");
   if (given.json && !one) throw bad_input("--json needs --mu");
   if (!given.contact.empty() && !one && !many) throw bad_input("--contact needs --mu or --queries");
@@ -98,6 +99,11 @@ const std::vector<OnlineOption> &online_options() {
        "(a CSV table on standard input)",
        &Arguments::queries},
       {"out", "FILE", "the table as CSV (standard output without it, or as -)", &Arguments::out},
+      {"only", "NAMES",
+       "these outputs alone, normal_force,peak_pressure: those of the case that are not named are "
+       "not "
+       "computed",
+       &Arguments::only},
       {"precision", "DIGITS", "of the numbers in the tables: 1 to 17, 10 without it",
        &Arguments::precision},
       {"contact", "FILE",
@@ -149,7 +155,7 @@ Outputs answer(OnlineSolver &solver, const Mu &mu, const OnlineArguments &argume
   if (arguments.full && solver.scene().components == 1)
     outputs.min_u = solver.field(solution).minCoeff();
   if (arguments.gradient) {
-    const std::vector<OutputColumn> columns = columns_of({outputs});
+    const std::vector<OutputColumn> columns = columns_of({asked_of(outputs, arguments.asked())});
     add_gradient(gradient_of(solver, mu, solution, columns), columns, solver.scene().parameters,
                  outputs);
   }
@@ -181,7 +187,8 @@ std::string warnings_of(const OnlineSolver &solver, const Mu &mu, const ReducedA
 void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ostream &out) {
   const Mu mu = parse_mu(solver.scene().parameters, arguments.mu, arguments.extrapolate);
   ReducedAnswer solution;
-  const Outputs outputs = answer(solver, mu, arguments, solution);
+  const Outputs all = answer(solver, mu, arguments, solution),
+                outputs = asked_of(all, arguments.asked());
   std::vector<std::filesystem::path> written;
   if (!arguments.vtu.empty())
     written = write_vtu(arguments.vtu, solver.scene(), expand(solver.scene().parameters, mu),
@@ -200,7 +207,7 @@ void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ost
     write_atomically(arguments.contact, traces.header() + traces.rows(solver, solution, 1));
     written.emplace_back(arguments.contact);
   }
-  const std::string warnings = warnings_of(solver, mu, solution, outputs);
+  const std::string warnings = warnings_of(solver, mu, solution, all);
   if (arguments.json) {
     out << json_of(solver, mu, solution, outputs, errors, warnings);
     return;
@@ -244,6 +251,7 @@ OnlineArguments parse_online_arguments(const std::vector<std::string> &arguments
     result.*option.text = equals == std::string::npos ? arguments[++i] : body.substr(equals + 1);
     if ((result.*option.text).empty()) throw bad_input(name + " needs a value");
   }
+  if (std::ranges::count(result.asked(), "min_u") > 0) result.full = true;
   check_combination(result);
   return result;
 }
@@ -296,7 +304,8 @@ void run(const OnlineArguments &arguments, const Registry &registry, std::ostrea
     print_model(out, model);
     return;
   }
-  QueryOptions how{.warm = arguments.warm};
+  check_asked(arguments.asked(), model);
+  QueryOptions how{.warm = arguments.warm, .only = arguments.asked()};
   if (!arguments.method.empty()) how.method = online_method(arguments.method);
   OnlineSolver solver(model, how);
   check_files(arguments, solver.scene());

@@ -2,8 +2,11 @@
 
 #include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/model/online.hpp"
+
+#include <algorithm>
 
 namespace rbvi {
 
@@ -62,6 +65,18 @@ std::vector<OutputColumn> columns_of_model(const ReducedModel &model) {
       {example_outputs(model, [&](const Mu &mu) { return solver.outputs(mu, solver.solve(mu)); })});
   std::erase_if(columns, [](const OutputColumn &column) { return column.name == "seconds"; });
   return columns;
+}
+
+void check_asked(const std::vector<std::string> &only, const ReducedModel &model) {
+  if (only.empty()) return;
+  std::vector<std::string> known{"seconds"};
+  if (model.scene.components == 1) known.emplace_back("min_u");
+  for (const OutputColumn &column : columns_of_model(model))
+    known.push_back(column.name);
+  for (const std::string &name : only)
+    if (std::ranges::find(known, name) == known.end())
+      throw bad_input("the model has no output '" + name + "': the nearest is '" +
+                      nearest_name(name, known) + "'");
 }
 
 bool nearest_sample_failed(const ReducedModel &model, const Mu &free) {

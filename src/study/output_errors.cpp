@@ -1,6 +1,7 @@
 #include "rbvi/study/output_errors.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/study/bench.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -94,18 +95,35 @@ Outputs outputs_with_field(const OnlineSolver &solver, const Mu &mu,
   return outputs;
 }
 
-std::vector<Outputs> reduced_outputs(const ReducedModel &model, const std::vector<Mu> &set) {
-  OnlineSolver solver(model);
+std::vector<Outputs> reduced_outputs(const ReducedModel &model, const std::vector<Mu> &set,
+                                     const std::vector<std::string> &only) {
+  OnlineSolver solver(model, {.only = only});
   std::vector<Outputs> rows;
   for (const Mu &mu : set) {
     rows.emplace_back();
     try {
-      rows.back() = outputs_with_field(solver, mu, solver.solve(mu, true));
+      const ReducedAnswer answer = solver.solve(mu, true);
+      rows.back() = asked_of(is_asked(only, "min_u") ? outputs_with_field(solver, mu, answer)
+                                                     : solver.outputs(mu, answer),
+                             only);
     } catch (const Error &error) {
       if (error.status() == Status::bad_input) throw;
     }
   }
   return rows;
+}
+
+double seconds_with_outputs(const ReducedModel &model, const std::vector<Mu> &set,
+                            const std::vector<std::string> &only) {
+  OnlineSolver solver(model, {.only = only});
+  const std::vector<double> seconds = seconds_each(set, [&](const Mu &mu) {
+    try {
+      (void)solver.outputs(mu, solver.solve(mu, true));
+    } catch (const Error &error) { // an answer that is not there takes its time, too
+      if (error.status() == Status::bad_input) throw;
+    }
+  });
+  return quantile(seconds, 0.5);
 }
 
 std::vector<OutputError> output_errors(const std::vector<Outputs> &reduced,

@@ -153,6 +153,9 @@ std::vector<Option> of_runs(ToolOptions &o) {
           "case to FILE_mesh, FILE_surface and FILE_partners")),
       of_command(text("csv", OptionKind::text, "file", o.csv,
                       "file to which solve writes its outputs as a table")),
+      of_command(text("only", OptionKind::text, "names", o.only,
+                      "verify: these outputs alone, as rbvi-online --only: errors and time are of "
+                      "queries that compute no others")),
       flag("verify_stability", o.stability,
            "verify: measure inf-sup constants and their bounds besides errors"),
       kept(

@@ -99,14 +99,15 @@ void write_stresses(OnlineSolver &solver, const std::vector<Mu> &set, const fs::
 /// Into the directory `out`: along.csv, reduced outputs along each free parameter through the
 /// middle of the box, as many rows for each one after the other; stresses.csv, what the contacts
 /// carry at the middle and at those of `set` where the normal force is least and largest; u.vtu
-/// with its contact files, the answer at the middle. `outputs`: of the set. Where there is no
-/// answer there are no rows, or no file. Serial.
+/// with its contact files, the answer at the middle. `outputs`: of the set; `only`: those of
+/// along.csv. Where there is no answer there are no rows, or no file. Serial.
 void write_pictures(const ReducedModel &model, const std::vector<Mu> &set,
-                    const std::vector<Outputs> &outputs, const fs::path &out) {
+                    const std::vector<Outputs> &outputs, const std::vector<std::string> &only,
+                    const fs::path &out) {
   const Mu middle = box_centre(model.scene.parameters);
   const std::vector<Mu> lines = along_parameters(model.scene, middle);
   std::ostringstream table;
-  write_csv(table, model.scene.parameters, lines, reduced_outputs(model, lines));
+  write_csv(table, model.scene.parameters, lines, reduced_outputs(model, lines, only));
   write_atomically(out / "along.csv", table.str());
   for (const char *file : {"stresses.csv", "u.vtu"})
     fs::remove(out / file);
@@ -314,6 +315,8 @@ void command_verify(const MeasureOptions &given) {
   const MPI_Comm world = PETSC_COMM_WORLD;
   ReducedModel model = model_of_run(world, given);
   const MeasureOptions options = adopt_model(given, model);
+  const std::vector<std::string> only = names_in(options.only);
+  collectively(world, [&] { check_asked(only, model); });
   check_eigen_options(options, options.stability ? EigenUse::constants : EigenUse::no_constants);
   const std::vector<Mu> validation = validation_set(options, model);
   const std::vector<Mu> training = from_columns(model.made.trained_mu);
@@ -340,13 +343,13 @@ void command_verify(const MeasureOptions &given) {
     make_directory(out);
     for (const char *of_another_model : {"infsup.csv", "infsup_training.csv", "stability.csv"})
       fs::remove(out / of_another_model);
-    const double query = check_errors(model, problem.w_product(), truths, boundary, out);
+    const double query = check_errors(model, problem.w_product(), truths, boundary, only, out);
     tell_of_speed(query, sweep.report.seconds_per_solve);
     look_for_other_answers(model, problem.scene(), from_columns(model.made.validated_mu));
     print_several_answers(std::cout, model);
     write_model(model, options.out / "model.h5");
     write_sample_table(out / "samples.csv", options.scene.parameters, answers);
-    write_pictures(model, truths.mu, truths.outputs, out);
+    write_pictures(model, truths.mu, truths.outputs, only, out);
   });
   write_error_map(out / "error_map.csv", world, model, truths, problem.w_product());
   write_mesh_quality(out / "mesh_quality.csv", world, problem, training, truths.mu);

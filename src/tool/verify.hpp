@@ -12,10 +12,11 @@ namespace rbvi {
 
 /// Prints the errors of the model and of its modes alone, writes their tables to the directory
 /// `out`, and stores what an answer is told of them in the model. `w`: the product of W. The sets
-/// may share a scale (share_scale); `boundary` may be empty. Returns the seconds of a
-/// query, the median. Serial.
+/// may share a scale (share_scale); `boundary` may be empty; `only`: outputs that are asked for
+/// (is_asked). Returns the seconds of a query with its outputs, the median. Serial.
 double check_errors(ReducedModel &model, const SparseMatrix &w, const Truths &validation,
-                    const Truths &boundary, const std::filesystem::path &out);
+                    const Truths &boundary, const std::vector<std::string> &only,
+                    const std::filesystem::path &out);
 
 /// Why there are no inf-sup constants to verify; empty: there are.
 std::string no_constants(const ReducedModel &model);

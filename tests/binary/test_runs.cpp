@@ -134,7 +134,7 @@ TEST_F(Runs, EveryEnrichmentIsReducedAndVerified) {
       const std::string summary = slurp("run/verify/summary.csv");
       EXPECT_TRUE(summary.starts_with("model,N,S,R,free_modes,u_mean,")) << summary;
       const std::vector<std::string> row = split(line_with(summary, way.row), ',');
-      ASSERT_EQ(row.size(), 16U);
+      ASSERT_EQ(row.size(), 17U);
       EXPECT_EQ(row[2] == "0", way.options == "decorrelated") << summary;
       EXPECT_GT(parse_number(row[4], "free_modes"), 0) << summary;
       EXPECT_EQ(row[15] == "0", fs::exists("run/verify/worst_pressure.csv")) << summary;

@@ -99,6 +99,21 @@ TEST(NamedOutputs, OfAModelComeBackFromItsFile) {
     expect_exact(mu, online.outputs(mu, online.solve(mu)));
 }
 
+TEST(NamedOutputs, OneAloneIsTheSame) {
+  Reduced made(block(all_kinds), "grid:2,2,2");
+  made.reduce(testing_reduced::everything());
+  if (rank_of(PETSC_COMM_WORLD) != 0) return;
+  const Mu mu{0.9, 0.15, 0.45};
+  OnlineSolver all(made.model);
+  const std::map<std::string, double> known = values_of(all.outputs(mu, all.solve(mu)));
+  for (const auto &[name, value] : known) {
+    OnlineSolver one(made.model, {.only = {name}});
+    const Outputs outputs = one.outputs(mu, one.solve(mu));
+    ASSERT_EQ(outputs.named.size(), 1U) << name;
+    EXPECT_EQ(values_of(outputs).at(name), value) << name;
+  }
+}
+
 /// Both are sums by Gauss points of the same functions.
 void expect_alike(const std::string &physics, const std::string &outputs,
                   const std::vector<std::array<std::string, 2>> &pairs, double near = 1e-12) {

@@ -30,7 +30,8 @@ struct OutputSources {
   /// boundaries impose, node * components + c.
   std::function<Vector(std::size_t i)> of_interface;
   std::function<double(int output)> of_cells; ///< values of those apart from contact
-  double least_pressure = 0; ///< with at most so much a node counts as out of contact
+  double least_pressure = 0;       ///< with at most so much a node counts as out of contact
+  std::vector<std::string> only{}; ///< outputs that are taken (is_asked)
 };
 
 /// Sets Outputs::named. `lambda`: at the dual dofs. NaN: an extremum or a mean over nothing, a slip

@@ -109,6 +109,11 @@ std::vector<OutputColumn> columns_of(const std::vector<Outputs> &rows);
 /// The one of this name; of none that is known that of a named output.
 OutputColumn output_column(const std::string &name);
 
+/// Whether an output is one of those that are asked for; `only` empty: all are.
+bool is_asked(const std::vector<std::string> &only, const std::string &name);
+/// The numbers that are asked for, of all contacts together, and all named outputs.
+Outputs asked_of(Outputs outputs, const std::vector<std::string> &only);
+
 /// Measured errors of outputs by column name, absolute.
 using ErrorOfOutput = std::map<std::string, double>;
 

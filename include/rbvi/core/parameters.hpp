@@ -84,5 +84,7 @@ double parse_number(const std::string &text, const std::string &what);
 
 /// "a,b,c" -> {"a", "b", "c"}; "" -> {}.
 std::vector<std::string> split(const std::string &text, char separator);
+/// Those with commas between them, without blanks around them.
+std::vector<std::string> names_in(const std::string &text);
 
 } // namespace rbvi

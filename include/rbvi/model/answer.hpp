@@ -8,6 +8,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace rbvi {
 
@@ -62,6 +63,8 @@ struct QueryOptions {
   bool looks_for_others = false; ///< ReducedAnswer::to_other, from further starts
   /// Not given: that of the model's setting "online_method" (OnlineSolver), else exact.
   std::optional<OnlineMethod> method{};
+  /// Outputs of the scene that OnlineSolver::outputs computes, by name; empty: all.
+  std::vector<std::string> only{};
 };
 
 /// One way to answer; what a query changes is its own.

@@ -19,9 +19,10 @@ bool fits(const OutputModel &outputs, const Scene &scene, Index cells);
 
 class CellOutputs {
 public:
-  /// Both must outlive it.
-  CellOutputs(const OutputModel &model, const Scene &scene);
-  /// Values by the number of the output, of an answer whose coefficients `u` must outlive them.
+  /// Of the outputs that are asked for (is_asked). `model` and `scene` must outlive it.
+  CellOutputs(const OutputModel &model, const Scene &scene,
+              const std::vector<std::string> &only = {});
+  /// Values by the number of such an output, of an answer whose coefficients `u` must outlive them.
   std::function<double(int output)> at(const FullMu &mu, const Vector &u) const;
 
 private:

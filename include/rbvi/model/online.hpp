@@ -100,6 +100,7 @@ private:
   const ReducedNitsche *nitsche_ = nullptr; ///< it, by Nitsche's method
   std::optional<NodalTrace> trace_;         ///< else
   SparseMatrix dual_basis_;
+  const std::vector<std::string> only_; ///< outputs of the scene
   const CellOutputs cell_outputs_;
   const ContactShares contact_shares_; ///< of reactions
 };

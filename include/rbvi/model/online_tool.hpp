@@ -10,11 +10,13 @@ namespace rbvi {
 
 struct OnlineArguments {
   /// "" where not given.
-  std::string model, mu, queries, out, contact, vtu, pack, fmu, precision, method, threads;
+  std::string model, mu, queries, out, contact, vtu, pack, fmu, precision, method, threads, only;
   bool extrapolate = false, decorrelated = false, full = false, gradient = false, warm = false,
        json = false, help = false, version = false;
   /// Of the outputs in tables.
   int digits() const { return precision.empty() ? 10 : std::stoi(precision); }
+  /// Outputs; empty: all.
+  std::vector<std::string> asked() const { return names_in(only); }
   /// Of a table of answers.
   std::size_t thread_count() const { return threads.empty() ? 1 : std::stoul(threads); }
 };

@@ -17,6 +17,9 @@ Outputs example_outputs(const ReducedModel &model,
 /// The outputs that a table of the model has, but for the time that each answer takes.
 std::vector<OutputColumn> columns_of_model(const ReducedModel &model);
 
+/// Throws bad_input, naming the nearest, for an output that a table of the model has not.
+void check_asked(const std::vector<std::string> &only, const ReducedModel &model);
+
 /// free parameters x samples, as ModelHistory::trained_mu; `rows`: number of free parameters.
 Matrix as_columns(const std::vector<Mu> &set, int rows);
 

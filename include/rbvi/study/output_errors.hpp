@@ -11,8 +11,14 @@ namespace rbvi {
 Outputs outputs_with_field(const OnlineSolver &solver, const Mu &mu, const ReducedAnswer &solution);
 
 /// The outputs of the model at each mu, in or out of its box; nothing is set where it has no
-/// answer. Serial.
-std::vector<Outputs> reduced_outputs(const ReducedModel &model, const std::vector<Mu> &set);
+/// answer. `only`: outputs that are asked for (is_asked). Serial.
+std::vector<Outputs> reduced_outputs(const ReducedModel &model, const std::vector<Mu> &set,
+                                     const std::vector<std::string> &only = {});
+
+/// Seconds of a query of the model with these outputs, without min_u, the median over the set.
+/// Serial.
+double seconds_with_outputs(const ReducedModel &model, const std::vector<Mu> &set,
+                            const std::vector<std::string> &only);
 
 /// Errors of every column that `truth` and `reduced` have, but for seconds and iterations, over
 /// those mu where both are set. `reduced`: of the first of the mu of `truth`, or of all. The range

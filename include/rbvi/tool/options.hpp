@@ -45,8 +45,10 @@ struct OfflineOptions : Setup, RunFiles {
 
 /// What is measured of it.
 struct MeasureOptions : OfflineOptions {
-  std::string valid;       ///< as parse_set reads it
-  bool stability = true;   ///< verify: inf-sup constants and bounds too
+  std::string valid;            ///< as parse_set reads it
+  bool stability = true;        ///< verify: inf-sup constants and bounds too
+  std::string only;             ///< verify: names of outputs; "": all
+  std::vector<int> convergence; ///< bench: refinements on which outputs are compared
   std::vector<int> growth; ///< bench: refinements whose cost is measured; empty: time against error
 };
 
