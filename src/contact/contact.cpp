@@ -272,6 +272,10 @@ DualRow dual_row(const Contact &contact, Index row) {
   return {i, (local - dual.nodes()) / tangents, false};
 }
 
+std::string said_of(const Contact &contact, Index row) {
+  return contact.names[dual_row(contact, row).interface] + ": ";
+}
+
 Matrix by_node(const Contact &contact, const Vector &lambda) {
   Matrix result = Matrix::Zero(contact.nodes(), 2);
   Index first = 0;

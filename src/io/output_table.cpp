@@ -5,7 +5,7 @@
 
 namespace rbvi {
 
-std::vector<std::string> csv_fields(const std::string &line) {
+std::vector<std::string> csv_fields(const std::string &line, char separator) {
   std::vector<std::string> fields{""};
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -14,7 +14,7 @@ std::vector<std::string> csv_fields(const std::string &line) {
       fields.back() += line[++i];
     else if (c == '"')
       quoted = !quoted;
-    else if (c == ',' && !quoted)
+    else if (c == separator && !quoted)
       fields.emplace_back();
     else
       fields.back() += c;
@@ -41,8 +41,8 @@ std::string csv_field(const std::string &text) {
 
 } // namespace
 
-RowText row_of(const Mu &mu, const std::string &id) {
-  RowText row{id, {}};
+RowText row_of(const Mu &mu, const std::vector<std::string> &passed) {
+  RowText row{passed, {}};
   for (const double value : mu)
     row.parameters.push_back(shortest_number(value));
   return row;
@@ -51,7 +51,8 @@ RowText row_of(const Mu &mu, const std::string &id) {
 OutputTable::OutputTable(std::ostream &out, const ParameterSpace &space, const Outputs &like,
                          TableStyle style)
     : out_(out), parameters_(space.size()), columns_(columns_of({like})), style_(std::move(style)) {
-  out_ << (style_.id ? "id," : "");
+  for (const std::string &name : style_.passed)
+    out_ << csv_field(name) << ',';
   for (int i = 0; i < parameters_; ++i)
     out_ << (i > 0 ? "," : "") << space.at(i).name;
   for (const OutputColumn &column : columns_) {
@@ -62,14 +63,15 @@ OutputTable::OutputTable(std::ostream &out, const ParameterSpace &space, const O
 }
 
 void OutputTable::begin(const RowText &row) {
-  if (style_.id) out_ << csv_field(row.id) << ',';
+  for (std::size_t i = 0; i < style_.passed.size(); ++i)
+    out_ << (i < row.passed.size() ? csv_field(row.passed[i]) : "") << ',';
   for (std::size_t i = 0; i < static_cast<std::size_t>(parameters_); ++i)
     out_ << (i > 0 ? "," : "") << (i < row.parameters.size() ? csv_field(row.parameters[i]) : "");
 }
 
 void OutputTable::add(const Mu &mu, const Outputs &outputs, bool errors_hold,
-                      const std::string &id) {
-  begin(row_of(mu, id));
+                      const std::vector<std::string> &passed) {
+  begin(row_of(mu, passed));
   const std::string format = "%." + std::to_string(style_.digits) + "g";
   for (const OutputColumn &column : columns_) {
     const std::optional<double> value = column.of(outputs);

@@ -23,7 +23,7 @@ namespace {
 using Generator = std::function<std::optional<Mu>()>;
 
 constexpr double largest_set = 1e7;
-constexpr const char *id_name = "id";
+const std::string id_name = "id";  ///< of a column that is handed on though tables of rbvi have it
 const std::string plus = " + ";    ///< between the sets of a sum
 const std::string within = " in "; ///< before a part of the box
 
@@ -129,7 +129,7 @@ public:
     if (!next_line(line)) throw no_rows();
     while_doing(reading(), [&] { read_header(line); });
   }
-  bool has_ids() const { return id_.has_value(); }
+  const std::vector<std::string> &passed() const { return passed_; }
   std::optional<Mu> next() {
     std::string line;
     if (!next_line(line)) {
@@ -160,19 +160,25 @@ private:
   }
   void read_header(const std::string &line) {
     std::vector<bool> found(space_.size(), false);
-    for (const std::string &field : csv_fields(line)) {
+    if (line.find(';') != std::string::npos && csv_fields(line).size() == 1) separator_ = ';';
+    for (const std::string &field : csv_fields(line, separator_)) {
       const std::string name = trimmed(field);
       const std::optional<std::size_t> i = find_free(space_, name);
-      if (!i && name == id_name && !id_)
-        id_ = columns_.size();
-      else if (!i && !is_passed_over(name))
-        throw unknown_parameter(space_, name);
+      if (!i && (name == id_name || !is_passed_over(name))) {
+        if (std::ranges::find(space_.all, name, &Parameter::name) != space_.all.end())
+          throw unknown_parameter(space_, name);
+        passed_.push_back(name);
+        passed_at_.push_back(columns_.size());
+      }
       if (i && found[*i]) throw bad_input("two columns are named '" + name + "'");
       if (i) found[*i] = true;
       columns_.push_back(i);
     }
-    if (std::find(found.begin(), found.end(), false) != found.end())
-      throw bad_input("the header must name every free parameter: " + names_of(space_));
+    const bool all = std::find(found.begin(), found.end(), false) == found.end();
+    const auto other =
+        std::ranges::find_if(passed_, [](const std::string &name) { return name != id_name; });
+    if (!all && other != passed_.end()) throw unknown_parameter(space_, *other);
+    if (!all) throw bad_input("the header must name every free parameter: " + names_of(space_));
   }
   bool is_passed_over(const std::string &name) const {
     return is_table_column(name) || std::ranges::any_of(own_, [&](const OutputForm &form) {
@@ -180,15 +186,18 @@ private:
            });
   }
   Mu read_row(const std::string &line) {
-    row_ = {"", std::vector<std::string>(space_.size())};
-    const std::vector<std::string> entries = csv_fields(line);
+    row_ = {{}, std::vector<std::string>(space_.size())};
+    std::vector<std::string> entries = csv_fields(line, separator_);
     for (std::size_t k = 0; k < std::min(entries.size(), columns_.size()); ++k)
       if (columns_[k]) row_.parameters[*columns_[k]] = trimmed(entries[k]);
-    if (id_ && *id_ < entries.size()) row_.id = entries[*id_];
+    for (const std::size_t k : passed_at_)
+      row_.passed.push_back(k < entries.size() ? entries[k] : "");
     if (entries.size() != columns_.size())
       throw bad_input(std::to_string(entries.size()) + " entries under " +
                       std::to_string(columns_.size()) + " columns");
     Mu mu(space_.size());
+    for (std::size_t k = 0; k < columns_.size(); ++k)
+      if (separator_ == ';' && columns_[k]) std::ranges::replace(entries[k], ',', '.');
     for (std::size_t k = 0; k < columns_.size(); ++k)
       if (columns_[k])
         mu[*columns_[k]] =
@@ -203,7 +212,9 @@ private:
   std::vector<OutputForm> own_;
   RowText &row_;
   std::vector<std::optional<std::size_t>> columns_; ///< free parameter of each column, if any
-  std::optional<std::size_t> id_;                   ///< column of ids
+  std::vector<std::string> passed_;                 ///< columns that are handed on
+  std::vector<std::size_t> passed_at_;
+  char separator_ = ',';
   long line_ = 0, rows_ = 0;
 };
 
@@ -243,7 +254,7 @@ ParameterReader::ParameterReader(const ParameterSpace &space, const std::string 
     const std::shared_ptr<std::ifstream> file = opened(space, text);
     const auto rows = std::make_shared<CsvRows>(space, file ? text : "standard input",
                                                 file ? *file : std::cin, allow_outside, own, *row_);
-    has_ids_ = rows->has_ids();
+    passed_ = rows->passed();
     next_ = [file, rows, row = row_] { return rows->next(); };
   }
 }
@@ -260,6 +271,8 @@ std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text, 
                       "': a sum is of grids, random points and "
                       "corners; put them into the file");
     ParameterReader reader(space, part, allow_outside, own);
+    for (const std::string &name : reader.passed())
+      if (name != id_name) throw unknown_parameter(space, name);
     while (std::optional<Mu> mu = reader.next())
       set.push_back(std::move(*mu));
   }

@@ -135,13 +135,15 @@ void ConeSolver::check_pull(const ReducedAnswer &answer) const {
   Index node = 0;
   if (pressure.minCoeff(&node) >= -largest_pull * pressure.maxCoeff()) return;
   const Point at = dual_points(contact_)[node];
-  throw failure((std::ostringstream("the pressure is negative at the contact point of reference "
-                                    "coordinates ",
-                                    std::ios::ate)
-                 << at[0] << ' ' << at[1] << ' ' << at[2]
-                 << ": contact opens there, and never did in training; reduce again with more "
-                    "training parameters or a larger -cone_ring")
-                    .str());
+  throw failure(
+      (std::ostringstream(said_of(contact_, node) +
+                              "the pressure is negative at the contact point of reference "
+                              "coordinates ",
+                          std::ios::ate)
+       << at[0] << ' ' << at[1] << ' ' << at[2]
+       << ": contact opens there, and never did in training; reduce again with more "
+          "training parameters or a larger -cone_ring")
+          .str());
 }
 
 /// From the undeformed body, on the trace of the primal basis, until (A.8) is met in its norm. A

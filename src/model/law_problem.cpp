@@ -113,9 +113,13 @@ void LawProblem::displace(ReducedAnswer &answer) const {
                    ": reduce again with more training parameters");
   }
   for (const Index column : edge_)
-    if (answer.lambda[column] != 0)
-      throw failure("contact reaches the edge of the nodes that the model has multipliers at: " +
+    if (answer.lambda[column] != 0) {
+      Index row = 0;
+      model_.contact.dual_basis.col(column).cwiseAbs().maxCoeff(&row);
+      throw failure(said_of(interfaces_, row) +
+                    "contact reaches the edge of the nodes that the model has multipliers at: " +
                     std::string(keeps_more));
+    }
   contact_->move(at_mu_, answer);
   if (law_.unloaded.size() > 0) answer.u += law_.unloaded;
 }

@@ -143,7 +143,7 @@ std::vector<Row> next_rows(ParameterReader &reader, std::size_t most) {
     try {
       const std::optional<Mu> mu = reader.next();
       if (!mu) break;
-      rows.push_back({row_of(*mu, reader.row().id), mu, ""});
+      rows.push_back({row_of(*mu, reader.row().passed), mu, ""});
     } catch (const Error &error) {
       if (error.status() != Status::bad_input) throw;
       rows.push_back({reader.row(), {}, error.what()});
@@ -176,7 +176,7 @@ void add_row(const Row &row, const OnlineSolver &solver, OutputTable &table, Tal
   const Mu &mu = *row.mu;
   const Scene &scene = solver.scene();
   const bool inside = in_box(scene.parameters, mu);
-  table.add(mu, row.outputs, inside, row.text.id);
+  table.add(mu, row.outputs, inside, row.text.passed);
   ++tally.rows;
   if (nearest_sample_failed(solver.model(), mu)) ++tally.near_failed;
   if (inside && beyond_validation(solver.model(), mu)) ++tally.unvalidated;
@@ -277,7 +277,7 @@ void answer_many(const OnlineArguments &arguments, const std::vector<OnlineSolve
     QueryProgress progress(total);
     OutputTable table(
         file.stream(), scene.parameters, like,
-        {errors_of_outputs(solver.model()), true, arguments.digits(), reader.has_ids()});
+        {errors_of_outputs(solver.model()), true, arguments.digits(), reader.passed()});
     const auto threads = static_cast<unsigned>(solvers.size());
     const std::size_t most = threads == 1 ? 1 : rows_of_thread * threads;
     for (auto rows = next_rows(reader, most); !rows.empty(); rows = next_rows(reader, most)) {

@@ -34,21 +34,21 @@ TEST(OutputTable, ErrorsStandBesideTheirOutputsAndFailuresSayWhy) {
   Outputs like;
   like.energy = like.kkt_residual = 0;
   std::ostringstream out;
-  OutputTable table(out, space, like, {{{"energy", 1.23e-5}, {"min_u", 1}}, true, 3, true});
+  OutputTable table(out, space, like, {{{"energy", 1.23e-5}, {"min_u", 1}}, true, 3, {"id", "time"}});
   Outputs row;
   row.energy = 0.12345678901;
   row.kkt_residual = 1e-15;
-  table.add({0.25}, row, true, "a,b");
+  table.add({0.25}, row, true, {"a,b", "0.5"});
   table.add({2}, row, false);
-  table.add_failure(row_of({0.5}, "7"), "it \"fails\", here\nand there");
-  table.add_failure({"8", {"one, two"}}, "not a number");
+  table.add_failure(row_of({0.5}, {"7", "1"}), "it \"fails\", here\nand there");
+  table.add_failure({{"8"}, {"one, two"}}, "not a number");
   table.add_failure({}, "nothing");
-  EXPECT_EQ(out.str(), "id,radius,energy,energy_error,kkt_residual,status\n"
-                       "\"a,b\",0.25,0.123,1.2e-05,1e-15,ok\n"
-                       ",2,0.123,,1e-15,ok\n"
-                       "7,0.5,,,,\"it \"\"fails\"\", here and there\"\n"
-                       "8,\"one, two\",,,,\"not a number\"\n"
-                       ",,,,,\"nothing\"\n");
+  EXPECT_EQ(out.str(), "id,time,radius,energy,energy_error,kkt_residual,status\n"
+                       "\"a,b\",0.5,0.25,0.123,1.2e-05,1e-15,ok\n"
+                       ",,2,0.123,,1e-15,ok\n"
+                       "7,1,0.5,,,,\"it \"\"fails\"\", here and there\"\n"
+                       "8,,\"one, two\",,,,\"not a number\"\n"
+                       ",,,,,,\"nothing\"\n");
 }
 
 TEST(OutputColumns, EachHasANameOfItsOwnAndADefinition) {

@@ -317,6 +317,55 @@ TEST_F(OnlineBinary, IdsAreHandedOnAndDigitsAreChosen) {
   EXPECT_TRUE(refused("model.h5 --mu 0.2,0,0 --precision 3", "needs --queries, --out"));
 }
 
+TEST_F(OnlineBinary, OutputsAloneThatAreAsked) {
+  const std::string one = online("model.h5 --mu 0.2,0,0 --only peak_pressure,energy").out;
+  const auto begins = [](const std::string &text, const std::string &start) {
+    return std::ranges::any_of(lines_of(text),
+                               [&](const std::string &line) { return line.starts_with(start); });
+  };
+  for (const char *name : {"energy ", "peak_pressure "})
+    EXPECT_TRUE(begins(one, name)) << one;
+  for (const char *name : {"normal_force", "kkt_residual", "seconds", "min_u"})
+    EXPECT_FALSE(begins(one, name)) << one;
+  EXPECT_TRUE(begins(online("model.h5 --mu 0.2,0,0 --only min_u").out, "min_u "));
+  const std::string table = online("model.h5 --queries grid:2,1,1 --only energy,seconds").out;
+  EXPECT_TRUE(table.starts_with("radius,center_x,center_y,energy,seconds,status\n")) << table;
+  EXPECT_EQ(rows_of(table)[1].at("energy"),
+            rows_of(online("model.h5 --queries grid:2,1,1").out)[1].at("energy"));
+  const std::string slopes = online("model.h5 --queries grid:2,1,1 --only energy --gradient").out;
+  EXPECT_TRUE(slopes.starts_with("radius,center_x,center_y,energy,d_energy_d_radius,"
+                                 "d_energy_d_center_x,d_energy_d_center_y,status\n"))
+      << slopes;
+  const std::string json = online("model.h5 --mu 0.2,0,0 --json --only energy").out;
+  EXPECT_TRUE(contains(json, "\"outputs\": {\"energy\": {")) << json;
+  EXPECT_FALSE(contains(json, "normal_force")) << json;
+  EXPECT_TRUE(refused("model.h5 --mu 0.2,0,0 --only force",
+                      "the model has no output 'force': the nearest is '"));
+  EXPECT_TRUE(refused("model.h5 --only energy", "--only needs --mu or --queries"));
+}
+
+/// Times and names go with their rows; a spreadsheet of another country is read.
+TEST_F(OnlineBinary, OtherColumnsAreHandedOn) {
+  std::ofstream("mu.csv") << "time;radius;center_x;center_y;who\n0,5;0,18;0,02;-1e-2;a;\n";
+  EXPECT_TRUE(refused("model.h5 --queries mu.csv", "6 entries under 5 columns"));
+  std::ofstream("mu.csv") << "time;radius;center_x;center_y;who\n0,5;0,18;0,02;-1e-2;\"a; b\"\n"
+                             "1;0.2;0;0;c\n";
+  const auto rows = rows_of(online("model.h5 --queries mu.csv").out);
+  ASSERT_GE(rows.size(), 2U);
+  EXPECT_EQ(rows[1].at("who"), "c");
+  EXPECT_EQ(rows[1].at("radius"), "0.2");
+  const std::string table = online("model.h5 --queries mu.csv --only energy").out;
+  EXPECT_TRUE(table.starts_with("time,who,radius,center_x,center_y,energy,status\n"
+                                "\"0,5\",a; b,0.18,0.02,-0.01,"))
+      << table;
+  std::ofstream("mu.csv") << "name,radius,center_x,center_y,energy\n\"first, of all\",0.9,0,0,7\n";
+  EXPECT_TRUE(refused("model.h5 --queries mu.csv", "line 2 of mu.csv"));
+  const std::string stream = shell(RBVI_ONLINE " model.h5 --only energy --queries - < mu.csv").out;
+  EXPECT_TRUE(contains(stream, "\"first, of all\",0.9,0,0,,\"radius = 0.9 is outside")) << stream;
+  std::ofstream("mu.csv") << "radus,center_x,center_y\n0.2,0,0\n";
+  EXPECT_TRUE(refused("model.h5 --queries mu.csv", "there is no parameter 'radus'"));
+}
+
 TEST_F(OnlineBinary, WarnsNextToAFailedTrainingSample) {
   model.made.trained_mu.resize(3, 1);
   model.made.trained_mu << 0.23, 0, 0;

@@ -68,6 +68,8 @@ struct DualRow {
   bool normal;
 };
 DualRow dual_row(const Contact &contact, Index row);
+/// "floor: ", the contact of a row, before what is said of it.
+std::string said_of(const Contact &contact, Index row);
 
 /// The multipliers of each dual node, of all interfaces: nodes x 2, normal and tangential (zero
 /// without friction).

@@ -10,19 +10,19 @@ namespace rbvi {
 
 /// A row of a table as its text stands there.
 struct RowText {
-  std::string id;                      ///< "" without one
+  std::vector<std::string> passed;     ///< of the columns that are handed on
   std::vector<std::string> parameters; ///< of the free ones
 };
 
 /// Those of an answer; the shortest that read back as the same numbers.
-RowText row_of(const Mu &mu, const std::string &id = "");
+RowText row_of(const Mu &mu, const std::vector<std::string> &passed = {});
 
 /// What a table of answers has beside parameters and outputs.
 struct TableStyle {
-  ErrorOfOutput errors = {}; ///< beside each of these outputs
-  bool status = false;       ///< a last column `status`: "ok", or why there is no answer
-  int digits = 10;           ///< of the outputs
-  bool id = false;           ///< a first column `id`, handed on from the queries
+  ErrorOfOutput errors = {};            ///< beside each of these outputs
+  bool status = false;                  ///< a last column `status`: "ok", or why there is no answer
+  int digits = 10;                      ///< of the outputs
+  std::vector<std::string> passed = {}; ///< first columns, handed on from the queries
 };
 
 /// A table of answers, row by row: the free parameters with all digits that it takes to read them
@@ -34,7 +34,7 @@ public:
               TableStyle style = {});
   /// An output that is not set leaves its place empty, as do errors where they do not hold.
   void add(const Mu &mu, const Outputs &outputs, bool errors_hold = true,
-           const std::string &id = "");
+           const std::vector<std::string> &passed = {});
   /// A row without an answer: what is known of it stays. Needs the column `status`.
   void add_failure(const RowText &row, const std::string &reason);
 
@@ -50,9 +50,9 @@ private:
 void write_csv(std::ostream &out, const ParameterSpace &space, const std::vector<Mu> &mus,
                const std::vector<Outputs> &rows);
 
-/// The fields of a row; those in double quotes may hold commas, and quotes that are doubled. Throws
-/// bad_input for a quote that is not closed.
-std::vector<std::string> csv_fields(const std::string &line);
+/// The fields of a row; those in double quotes may hold separators, and quotes that are doubled.
+/// Throws bad_input for a quote that is not closed.
+std::vector<std::string> csv_fields(const std::string &line, char separator = ',');
 
 /// In double quotes, which are doubled inside, without line breaks: one field of a row.
 std::string csv_quoted(const std::string &text);

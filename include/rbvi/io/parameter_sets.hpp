@@ -20,8 +20,9 @@ namespace rbvi {
 std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text,
                           bool allow_outside = false, const std::vector<OutputForm> &own = {});
 
-/// A set one by one, in constant memory; "-" is a CSV table on standard input. A column `id` of a
-/// table is no parameter, and is handed on.
+/// A set one by one, in constant memory; "-" is a CSV table on standard input. Columns of a table
+/// that are neither parameters nor outputs are handed on. Where its header has semicolons and no
+/// comma these stand between columns, and numbers may have decimal commas.
 class ParameterReader {
 public:
   /// `space` must outlive it. Throws bad_input for a set that cannot be read from the beginning.
@@ -30,14 +31,15 @@ public:
   /// The next one, nothing at the end. Throws bad_input, naming the line, for a row that is none;
   /// the rows behind it can still be read.
   std::optional<Mu> next() { return next_(); }
-  bool has_ids() const { return has_ids_; }
+  /// Names of the columns that are handed on.
+  const std::vector<std::string> &passed() const { return passed_; }
   /// What stands in the row of the last next() of a table; empty for other sets.
   const RowText &row() const { return *row_; }
 
 private:
   std::function<std::optional<Mu>()> next_;
   std::shared_ptr<RowText> row_ = std::make_shared<RowText>();
-  bool has_ids_ = false;
+  std::vector<std::string> passed_;
 };
 
 /// Whether the set is the name of a file.
