@@ -102,6 +102,21 @@ Values with_places(CaseNode root) {
   return values_of(root);
 }
 
+/// "young" of parameters.young.default, "friction.coulomb of floor" of
+/// contact.floor.friction.coulomb; what has no name of its own is a path.
+std::string in_words(const std::string &path) {
+  static const std::set<std::string> with_names{"materials", "imposed",    "loads", "springs",
+                                                "contact",   "parameters", "let",   "outputs"};
+  const std::size_t section = path.find('.'), name = path.find('.', section + 1);
+  if (section == std::string::npos || path.find('\\') != std::string::npos ||
+      !with_names.contains(path.substr(0, section)))
+    return path;
+  const std::string of = path.substr(section + 1, name - section - 1),
+                    what = name == std::string::npos ? "" : path.substr(name + 1);
+  const bool value = path.starts_with("parameters.") && what == "default";
+  return what.empty() || value ? of : what + " of " + of;
+}
+
 /// Null: nothing stands there.
 const std::string *value_at(const Values &values, const std::string &path) {
   const auto found = std::ranges::find(values, path, &Values::value_type::first);
@@ -176,12 +191,12 @@ std::string scene_difference(const std::string &theirs, const std::string &mine,
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::string *old = value_at(old_values, values[i].first);
     if (old == nullptr || *old != values[i].second)
-      return names[i].first + " is " + values[i].second + ", it was " +
+      return in_words(names[i].first) + " is " + values[i].second + ", it was " +
              (old == nullptr ? "not there" : *old);
   }
   for (std::size_t i = 0; i < old_values.size(); ++i)
     if (value_at(values, old_values[i].first) == nullptr)
-      return old_names[i].first + " was " + old_values[i].second + " and is gone";
+      return in_words(old_names[i].first) + " was " + old_values[i].second + " and is gone";
   return "";
 }
 

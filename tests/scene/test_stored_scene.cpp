@@ -138,15 +138,15 @@ TEST(StoredScene, TheFirstDifferenceIsToldInTheWordsOfTheCase) {
   const std::string floor = "against: {plane: {normal: [0, -1], position: 0}}";
   EXPECT_EQ(difference({}, {}), "");
   EXPECT_EQ(difference({}, {{"materials", "{rubber: {at: all, E: k*young, nu: nu}}"}}),
-            "materials.rubber.E is k*young, it was young*k");
+            "E of rubber is k*young, it was young*k");
   EXPECT_EQ(difference({}, {{"imposed", "{top: {at: top, uy: -depth}}"}}),
-            "imposed.top.ux was 0 and is gone");
+            "ux of top was 0 and is gone");
   EXPECT_EQ(difference({}, {{"v_length", "2"}}), "v_length is 2, it was not there");
   EXPECT_EQ(difference({}, {{"contact", "{floor: {at: contact, against: {plane: {normal: [0, -1], "
                                         "position: -0.01}}}}"}}),
-            "contact.floor.against.plane.position is -0.01, it was 0");
+            "against.plane.position of floor is -0.01, it was 0");
   EXPECT_EQ(scene_difference(tree_of({}), tree_of({}, {}, {{"young", "20"}})),
-            "parameters.young.default is 20, it was 15");
+            "young is 20, it was 15");
   EXPECT_EQ(scene_difference(tree_of({}), tree_of({}, {"", {{"mesh.degree", "1"}}, {}})),
             "mesh.degree is 1, it was not there");
 }
@@ -196,8 +196,8 @@ TEST(StoredScene, OutputsCountWhereTheyAreAskedFor) {
     return scene_difference(theirs, mine, Compared::answers_and_outputs);
   };
   EXPECT_EQ(scene_difference(of("2"), of("3")), "");
-  EXPECT_EQ(between(of("2"), of("3")), "let.twice is 3, it was 2");
-  EXPECT_EQ(between(tree_of({}), of("2")), "let.twice is 2, it was not there");
+  EXPECT_EQ(between(of("2"), of("3")), "twice is 3, it was 2");
+  EXPECT_EQ(between(tree_of({}), of("2")), "twice is 2, it was not there");
 }
 
 } // namespace

@@ -28,7 +28,7 @@ std::map<std::string, std::string> texts_of_parameters(const Scene &scene);
 enum class Compared { answers, answers_and_outputs };
 
 /// The first value of `mine` that is not the same in `theirs`, both trees:
-/// "parameters.poisson.default is .3, it was .35". Empty: there is none. Texts are compared, not
+/// "poisson is .3, it was .35", "nu of rubber is ...". Empty: there is none. Texts are compared, not
 /// what they mean: 2*x is not x*2. What changes no answer does not count: names, texts for people,
 /// boxes, limits, values of parameters that have a range, training sets, requirements, tests, facts
 /// of meshes; and parameters and lets that nothing else names.
