@@ -40,14 +40,16 @@ int queries_of_check(const ReducedModel &model) {
 }
 
 SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries,
-                     const QueryOptions &options) {
+                     const QueryOptions &options, const QueriesAsked &asked) {
   const std::vector<Mu> set = set_of_check(model.scene.parameters, queries);
   SelfCheck check;
   OnlineSolver solver(model, scene, options);
   check.queries = static_cast<int>(set.size());
   check.at_boundary = check.queries - queries;
   double peak = 0;
+  int done = 0;
   for (const Mu &mu : set) {
+    if (asked) asked(done++, check.queries);
     try {
       const ReducedAnswer solution = solver.solve(mu);
       const Outputs outputs = solver.outputs(mu, solution);
@@ -70,12 +72,15 @@ SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries,
   return check;
 }
 
-void look_for_other_answers(ReducedModel &model, const Scene &scene, std::vector<Mu> set) {
+void look_for_other_answers(ReducedModel &model, const Scene &scene, std::vector<Mu> set,
+                            const QueriesAsked &asked) {
   if (!has_friction(scene) || !model.contact.law) return;
   if (set.empty()) set = set_of_check(model.scene.parameters, queries_of_check(model));
   OnlineSolver solver(model, scene, {.looks_for_others = true});
   Worst farthest;
+  int done = 0;
   for (const Mu &mu : set) {
+    if (asked) asked(done++, static_cast<int>(set.size()));
     try {
       if (const double other = solver.solve(mu).to_other; other > farthest.value)
         farthest = {other, mu};

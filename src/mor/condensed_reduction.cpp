@@ -58,11 +58,12 @@ void make_condensed(Reducing &at) {
 
 StageNeed condensation_need(const ReductionSize &size) {
   const auto &[samples, dofs, contact, multipliers, ranks, axes, points, square, entries, factor,
-               of_a, of_f, of_b, joined, modes, model] = size;
+               of_a, of_f, of_b, joined, modes, model, self_check] = size;
   const bool varies = axes > 0;
+  const double factorisations = of_a > 0 ? points : std::min(points, span_factorisations);
   return {.numbers = size.responses(contact) + (varies ? 6 : 2) * dofs * modes / ranks +
                      square * (varies ? std::min(points, 3 * most_terms) : 3),
-          .seconds = varies ? 0 : factor * (factor_seconds + contact / ranks * column_seconds)};
+          .seconds = factorisations * factor * (factor_seconds + contact / ranks * column_seconds)};
 }
 
 /// The training multipliers that `project` has left in the model become what a query starts from.

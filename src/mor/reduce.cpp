@@ -7,10 +7,12 @@
 #include "rbvi/model/self_check.hpp"
 #include "rbvi/mor/reduced_balance.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/par/progress.hpp"
 #include "shared_stages.hpp"
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string_view>
 
 namespace rbvi {
@@ -189,6 +191,14 @@ std::string self_check_text(const Reduction *made) {
          short_number(check.penetration.value);
 }
 
+/// Lines of progress of a rank that asks queries.
+QueriesAsked reported(const char *what) {
+  return [what, progress = std::shared_ptr<Progress>()](int done, int all) mutable {
+    if (!progress) progress = std::make_shared<Progress>(what, all, true);
+    progress->update(done);
+  };
+}
+
 /// Into the model of rank 0.
 void check_answers(Reducing &at) {
   const MPI_Comm comm = at.problem.comm();
@@ -196,9 +206,10 @@ void check_answers(Reducing &at) {
   std::array<int, 2> found{};
   collectively(comm, [&] {
     if (rank_of(comm) != 0) return;
-    look_for_other_answers(model, at.problem.scene());
-    model.made.self_check = self_check(model, at.problem.scene(), queries_of_check(model),
-                                       {.method = at.options.online_method});
+    look_for_other_answers(model, at.problem.scene(), {}, reported("queries for other answers"));
+    model.made.self_check =
+        self_check(model, at.problem.scene(), queries_of_check(model),
+                   {.method = at.options.online_method}, reported("queries of the self-check"));
     found = {model.made.self_check.unanswered, model.made.self_check.answered() ? 1 : 0};
   });
   MPI_Bcast(found.data(), 2, MPI_INT, 0, comm);
@@ -216,7 +227,7 @@ ReductionStage self_check_stage() {
           },
           check_answers,
           [](const ReductionSize &size) {
-            return StageNeed{size.dofs * size.modes / size.ranks, size.model};
+            return StageNeed{size.dofs * size.modes / size.ranks, size.model, size.self_check};
           }};
 }
 

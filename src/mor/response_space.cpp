@@ -4,6 +4,7 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/columns.hpp"
+#include "rbvi/par/progress.hpp"
 #include "rbvi/solve/methods.hpp"
 #include "rbvi/solve/response_solver.hpp"
 #include "rbvi/solve/vectors.hpp"
@@ -194,6 +195,7 @@ ResponseSpace append_fields(Problem &problem, const FieldSource &source,
   std::mt19937 generator(1); // the same on every rank
   double scale = 0;
   Index expected = 0;
+  Progress progress("factorisations for responses", 0, rank_of(problem.comm()) == 0);
   for (std::pair<MultiIndex, double> next{MultiIndex(axes.size(), 0), 1}; next.second > tolerance;
        next = grid.next()) {
     result.left = next.second;
@@ -219,7 +221,9 @@ ResponseSpace append_fields(Problem &problem, const FieldSource &source,
       longest = append_by_combinations(source, tolerance * scale, generator, growing, expected);
     }
     grid.taken[next.first] = longest / scale;
-    ++result.points;
+    progress.update(++result.points, 0,
+                    "largest remainder " + short_number(next.second) + ", wanted " +
+                        short_number(tolerance) + ", ");
   }
   result.functions = static_cast<int>(basis.size() - before);
   return result;

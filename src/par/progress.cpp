@@ -1,5 +1,7 @@
 #include "rbvi/par/progress.hpp"
 
+#include "rbvi/core/text.hpp"
+
 #include <unistd.h>
 
 #include <cstdio>
@@ -38,12 +40,19 @@ bool Progress::due() const {
 }
 
 void Progress::update(int done, double left, const std::string &detail) {
-  if (!reports_ || done == 0 || (!due() && done < total_)) return;
+  if (!reports_ || done == 0 || (!due() && (total_ == 0 || done < total_))) return;
   last_ = std::chrono::steady_clock::now();
   const double elapsed = Seconds(last_ - start_).count();
-  std::printf("%s  %d of %d %s, %s%.1f s, %.1f s left%s", terminal_ ? "\r" : "", done, total_,
-              what_.c_str(), detail.c_str(), elapsed, left, terminal_ ? "\x1b[K" : "\n");
+  const std::string of = total_ > 0 ? " of " + std::to_string(total_) : "",
+                    rest = total_ > 0 ? formatted(", %.1f s left", left) : "";
+  std::printf("%s  %d%s %s, %s%.1f s%s%s", terminal_ ? "\r" : "", done, of.c_str(), what_.c_str(),
+              detail.c_str(), elapsed, rest.c_str(), terminal_ ? "\x1b[K" : "\n");
   std::fflush(stdout);
+}
+
+void Progress::update(int done) {
+  const double elapsed = Seconds(std::chrono::steady_clock::now() - start_).count();
+  if (done > 0) update(done, elapsed / done * (total_ - done));
 }
 
 } // namespace rbvi

@@ -1,5 +1,6 @@
 #include "rbvi/tool/foreseen.hpp"
 
+#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/mor/reduction.hpp"
@@ -61,6 +62,13 @@ constexpr double newton_solves = 80;    ///< by Nitsche's method, for a sample
 constexpr double axis_points = 9;       ///< of the grid of the condensed operator
 constexpr double most_modes = 200;      ///< however many samples
 constexpr double most_buffered = 1e7;   ///< numbers: while fields are written
+constexpr double most_queries = 200;    ///< random ones of the self-check
+constexpr double for_others = 5;        ///< times as many where friction may have other answers
+constexpr double query_seconds = 1e-4;  ///< of a small model
+constexpr double trace_seconds = 1e-9;  ///< for a number of the modes on the contact region
+constexpr double pair_seconds = 3e-10;  ///< for the cube of the modes of a pair of spaces
+constexpr double state_steps = 10;      ///< of contact that follows the displacement
+constexpr double balance_solves = 5;    ///< of bodies that contact alone holds
 constexpr const char *coarser_mesh = "a coarser mesh (-mesh_refine, -mesh)";
 
 /// Nonzeros of a row of A, on average.
@@ -139,7 +147,7 @@ void print_stages(const std::vector<StageTable> &tables, const Foresight &forese
   };
   std::printf("%-24s %8s %9s %6s %7s  %s\n", "Stage", "seconds", "(planned)", "MB", "(plan)",
               "what");
-  double seconds = 0, peak = 0;
+  double seconds = 0, planned = 0, peak = 0;
   for (const StageTable &rows : tables)
     for (const StageRow &row : rows) {
       const bool skipped = row.kind == StageKind::skipped || row.kind == StageKind::nothing_to_do;
@@ -151,10 +159,13 @@ void print_stages(const std::vector<StageTable> &tables, const Foresight &forese
              number("%.0f", row.peak / megabyte), number("(%.0f)", plan.first / megabyte)},
             (skipped ? "skipped: " : "") + row.what);
       seconds += row.seconds.value_or(0);
+      planned += skipped ? 0 : plan.seconds;
       peak = std::max(peak, row.peak);
     }
-  if (seconds > 0)
-    print("total", {formatted("%.3f", seconds), "", number("%.0f", peak / megabyte), ""}, "");
+  if (seconds + planned > 0)
+    print("total",
+          {number("%.3f", seconds), number("(%.2g)", planned), number("%.0f", peak / megabyte), ""},
+          "");
 }
 
 RunSizes sizes_by_count(MPI_Comm world, const Groups &groups, const Setup &setup) {
@@ -173,6 +184,7 @@ RunSizes sizes_of(MPI_Comm world, const Problem &problem, const HfOptions &optio
   size.dofs = problem.dofs().total_free;
   size.contact = problem.trace().size;
   size.multipliers = static_cast<double>(problem.dual_size());
+  if (!problem.free_bodies().empty()) size.balances = balance_solves;
   size.solves = newton_solves;
   size.eliminated = !has_multipliers(problem.scene());
   if (size.eliminated) return size;
@@ -211,6 +223,11 @@ ReductionSize reduction_size(const OfflineOptions &options, const std::vector<Mu
   const double terms = count(split_sum(scene.a, space).exact) + std::min(size.of_a, most_terms / 2);
   size.model =
       size.dofs * size.modes / size.ranks + terms * size.modes * size.modes + joining.stored;
+  const double query = query_seconds + trace_seconds * size.contact * size.modes +
+                       (way.dual_basis && !way.law ? pair_seconds * std::pow(size.modes, 3) : 0);
+  size.self_check = (most_queries + count(corners_and_faces(space))) * query * run.balances *
+                    (has_friction(scene) ? for_others : 1) *
+                    (follows_state(scene) ? state_steps : 1);
   return size;
 }
 

@@ -31,5 +31,19 @@ TEST_F(Workflow, ErrorsAndTimesAreOfTheOutputsThatAreAsked) {
   EXPECT_EQ(wrong.err, "rbvi: the model has no output 'energie': the nearest is 'energy'\n");
 }
 
+/// Of a plan what can take longest, and what all of it takes.
+TEST_F(Workflow, APlanForeseesCondensationAndSelfCheck) {
+  for (const std::string parameters : {"radius", "radius,poisson_ratio"}) {
+    const std::string plan =
+        output_of(rbvi(1, "offline -case " RBVI_CASES "/rigid_disk -arc_edges 40 -train 5 -plan "
+                          "-parameters " +
+                              parameters));
+    for (const char *stage : {"  condensation ", "  self-check ", "  total "}) {
+      const std::string line = line_with(plan, stage);
+      EXPECT_TRUE(line.find(" (") < line.find(')')) << plan;
+    }
+  }
+}
+
 } // namespace
 } // namespace rbvi::workflow_test

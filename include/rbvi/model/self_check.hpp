@@ -3,22 +3,29 @@
 
 #include "rbvi/model/online.hpp"
 
+#include <functional>
+
 namespace rbvi {
 
 /// Random ones: 200, fewer (at least 20) of a model of more than 500 functions, whose queries take
 /// long.
 int queries_of_check(const ReducedModel &model);
 
+/// Told, before each query, how many were asked, of how many.
+using QueriesAsked = std::function<void(int done, int all)>;
+
 /// Asks `model` at so many random parameters of its box, the same on every machine, and at its
 /// corners and faces (corners_and_faces), and collects what SelfCheck holds. Costs so many queries
-/// with outputs. Throws bad_input where model, scene and options do not fit.
+/// with outputs; `asked` is told of each. Throws bad_input where model, scene and options do not
+/// fit.
 SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries,
-                     const QueryOptions &options = {});
+                     const QueryOptions &options = {}, const QueriesAsked &asked = {});
 
 /// Asks a model with friction whether its law has other answers (QueryOptions::looks_for_others) at
 /// the parameters of `set`; empty: at those of the self-check. Where it has, the model knows
 /// (has_several_answers). Costs a few times as many queries. Throws likewise.
-void look_for_other_answers(ReducedModel &model, const Scene &scene, std::vector<Mu> set = {});
+void look_for_other_answers(ReducedModel &model, const Scene &scene, std::vector<Mu> set = {},
+                            const QueriesAsked &asked = {});
 
 /// "200 random queries and 14 at corners and faces, all answered; largest residual 3e-14
 /// (radius=0.8), ...": lines for people; says what to do where it is not clean.

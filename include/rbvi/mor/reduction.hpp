@@ -35,6 +35,7 @@ struct ReductionSize {
   double of_a, of_f, of_b;      ///< samples of A and F, numbers of those of B
   double joined = 0, modes = 0; ///< functions that join the modes; with them
   double model = 0;             ///< of the reduced model
+  double self_check = 0;        ///< seconds
   /// Responses to so many loads, shared among the ranks.
   double responses(double loads) const;
 };
@@ -45,9 +46,10 @@ struct StageNeed {
   double numbers = 0, on_first = numbers, seconds = 0;
 };
 
-inline constexpr double factor_seconds = 1e-8;  ///< for an entry of a factor
-inline constexpr double column_seconds = 2e-10; ///< likewise, of many right-hand sides at once
-inline constexpr double most_terms = 100;       ///< of the condensed operator; twice what A has
+inline constexpr double factor_seconds = 1e-8;    ///< for an entry of a factor
+inline constexpr double column_seconds = 2e-10;   ///< likewise, of many right-hand sides at once
+inline constexpr double span_factorisations = 60; ///< factorisations that responses in a span take
+inline constexpr double most_terms = 100;         ///< of the condensed operator; twice what A has
 inline constexpr const char *fewer_samples =
     "fewer samples (-train) or a coarser mesh (-mesh_refine, -mesh)";
 inline constexpr const char *coarser_hats =

@@ -8,7 +8,8 @@ namespace rbvi {
 
 class Progress {
 public:
-  /// `what`: "samples"; `total` steps in all; a rank that does not report stays silent.
+  /// `what`: "samples"; `total` steps in all, 0 where nobody knows; a rank that does not report
+  /// stays silent.
   Progress(std::string what, int total, bool reports);
   ~Progress(); ///< ends the line
   Progress(const Progress &) = delete;
@@ -18,6 +19,8 @@ public:
   /// `done` of the total are finished, the others take `left` seconds; `detail` ("0.1 s each, ")
   /// stands before the times.
   void update(int done, double left, const std::string &detail = "");
+  /// The same where each step takes as long.
+  void update(int done);
 
 private:
   std::string what_;

@@ -26,14 +26,15 @@ StageTable closing_stages();
 /// What a stage will take.
 struct Foreseen {
   double first = 0, others = 0; ///< bytes: largest resident set of the first rank, of each other
-  double seconds = 0;           ///< 0: hangs on what the stages before it find
+  double seconds = 0;           ///< 0: hangs on what the stages before it find, or is short
   const char *smaller = "";     ///< what makes it smaller
 };
 /// By the names of stages.
 using Foresight = std::map<std::string, Foreseen>;
 
 /// Stage, seconds, and megabytes where the process had not taken as many before (nothing where none
-/// are known), in parentheses those foreseen of a rank, what; where anything was timed, the total.
+/// are known), in parentheses those foreseen of a rank, what; the totals of both times, what is not
+/// foreseen left out.
 void print_stages(const std::vector<StageTable> &tables, const Foresight &foreseen);
 
 /// Of an offline run.
@@ -41,6 +42,7 @@ struct RunSizes {
   double dofs = 0;                     ///< free ones
   double contact = 0, multipliers = 0; ///< contact dofs, dual dofs; 0: not known yet
   double solves = 0;                   ///< with factors of A, for a sample (contact_cost)
+  double balances = 1;                 ///< solves of a query: more where contact alone holds bodies
   bool eliminated = false;     ///< contact: no operator is condensed, as by Nitsche's method
   int ranks = 1, group = 1;    ///< of the run, of a solve
   double before = 0, held = 0; ///< bytes of a rank: before the mesh, and with it
