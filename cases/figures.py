@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Figures of a run: figures.py RUN_DIR writes PNG and PDF files into RUN_DIR/figures; figures.py
-DIR/u.vtu draws that answer alone, into DIR/figures.
+DIR/u.vtu draws that answer alone, into DIR/figures; figures.py RUN RUN ... draws the errors of
+several runs that were verified over time and size, into figures beside them.
 
 Reads RUN_DIR/model.h5 and samples.csv (rbvi offline), RUN_DIR/verify/*.csv (rbvi verify),
 RUN_DIR/u.vtu with the contact files beside it (rbvi-online --vtu, or rbvi solve -vtu; of rbvi check
@@ -17,6 +18,7 @@ import numpy as np
 
 from bench_figures import bench
 from case_figures import case
+from compare_figures import compare
 from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, contact_names, free_parameters,
                           history, in_length, in_stress, model_of, plt, table, use_units, wider,
                           with_unit)
@@ -341,9 +343,11 @@ def draw_all(figures, source):
 
 
 def main(arguments):
-    if len(arguments) != 1 or arguments[0].startswith("-"):
-        print("usage: figures.py RUN_DIR | DIR/u.vtu", file=sys.stderr)
+    if not arguments or any(argument.startswith("-") for argument in arguments):
+        print("usage: figures.py RUN_DIR | DIR/u.vtu | RUN_DIR RUN_DIR ...", file=sys.stderr)
         return 2
+    if len(arguments) > 1:
+        return draw_all((compare,), list(map(Path, arguments)))
     run = Path(arguments[0])
     if run.suffix == ".vtu":
         use_units(run)

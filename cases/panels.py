@@ -39,6 +39,7 @@ class Lines:
     ylabel: str
     curves: list = field(default_factory=list)
     log: bool = False
+    log_x: bool = False
     floor: float = ZERO
     right: str = ""  # label of the axis at the right
     least: float = 0
@@ -76,7 +77,10 @@ class Lines:
             axes[True].spines["right"].set_visible(True)
             axes[True].grid(False)
         whole = all(np.array_equal(curve.x, np.round(curve.x)) for curve in self.curves)
-        axis.xaxis.set_major_locator(MaxNLocator(4, integer=whole))
+        if self.log_x:
+            decades(axis)
+        else:
+            axis.xaxis.set_major_locator(MaxNLocator(4, integer=whole))
         handles = [handle for handle in handles if handle.get_label()[:1] not in ("", "_")]
         if handles:
             legend_below(axis, handles)
@@ -177,6 +181,13 @@ def shown(curve, panel):
 
 def fitting(text, letters=LETTERS):
     return "\n".join(textwrap.wrap(text, letters, break_long_words=False))
+
+
+def decades(axis):
+    """A logarithmic axis of x, of whole decades."""
+    low, high = axis.dataLim.intervalx
+    axis.set_xscale("log")
+    axis.set_xlim(10 ** np.floor(np.log10(low) - 0.1), 10 ** np.ceil(np.log10(high) + 0.1))
 
 
 def ratio_of(points):

@@ -51,10 +51,12 @@ const std::vector<Command> &commands() {
        "rbvi verify -out DIRECTORY [options]"},
       {"solve", "one high-fidelity solve at -mu", "rbvi solve -case FILE -mu VALUES [options]"},
       {"bench", "run time against error", "rbvi bench -out DIRECTORY [options]"},
+      {"compare", "errors, sizes and times of runs that were verified",
+       "rbvi compare RUN RUN ... [-csv FILE]", false},
       {"check", "a case, before anything is made of it", "rbvi check FILE [options]"},
-      {"new", "a case to begin with, in a folder of its own", "rbvi new NAME [-mesh FILE]"},
-      {"list", "the cases of a folder, by default of cases", "rbvi list [FOLDER]"},
-      {"inspect", "what a model file holds", "rbvi inspect FILE"}};
+      {"new", "a case to begin with, in a folder of its own", "rbvi new NAME [-mesh FILE]", false},
+      {"list", "the cases of a folder, by default of cases", "rbvi list [FOLDER]", false},
+      {"inspect", "what a model file holds", "rbvi inspect FILE", false}};
   return all;
 }
 

@@ -5,6 +5,7 @@
 #include "rbvi/io/system_error.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/tool/options.hpp"
+#include "table.hpp"
 
 #include <unistd.h>
 
@@ -51,9 +52,25 @@ std::string left_over(const std::string &word) {
   return "'" + word + "' is left over: rbvi COMMAND -option value ... (rbvi -help)";
 }
 
+/// Takes the words behind compare. Returns why not.
+std::string take_runs(Invocation &result, std::vector<std::string> &given) {
+  for (std::size_t i = 1; i < given.size(); ++i)
+    if (given[i] == "-csv" && i + 1 < given.size())
+      result.topic = given[++i];
+    else if (is_option(given[i]))
+      return left_over(given[i]);
+    else
+      result.files.push_back(given[i]);
+  if (result.files.size() < 2)
+    return "compare takes run folders or model files: rbvi compare run/one run/other [-csv FILE]";
+  given.resize(1);
+  return "";
+}
+
 /// Takes the word behind the command, where it has one: a file, a folder, a name. Returns why not.
 std::string take_word(Invocation &result, std::vector<std::string> &given) {
   const std::string &command = result.command;
+  if (command == "compare") return take_runs(result, given);
   const bool word = given.size() > 1 && !is_option(given[1]);
   if (command == "check" && word) given.insert(given.begin() + 1, "-case");
   if (command == "new" && given.size() == 4 && given[2] == "-mesh") {
@@ -85,8 +102,9 @@ std::vector<char *> Invocation::pointers() const {
 }
 
 Invocation read_invocation(int argc, char **argv) {
-  static const std::vector<std::string> commands{"offline", "solve", "verify",  "bench", "check",
-                                                 "new",     "list",  "inspect", "help"};
+  std::vector<std::string> names{"help"};
+  for (const Command &command : commands())
+    names.push_back(command.name);
   Invocation result;
   std::vector<std::string> given = normalised_arguments(argc, argv);
   const auto has = [&](const char *name) {
@@ -107,16 +125,16 @@ Invocation read_invocation(int argc, char **argv) {
     given.emplace_back("help");
   }
   result.command = given[1];
-  if (std::find(commands.begin(), commands.end(), result.command) == commands.end())
+  if (std::find(names.begin(), names.end(), result.command) == names.end())
     return refused("unknown command '" + result.command + "'; the nearest one is '" +
-                   nearest_name(result.command, commands) + "' (rbvi -help lists all)");
+                   nearest_name(result.command, names) + "' (rbvi -help lists all)");
   given.erase(given.begin() + 1);
   if (const std::string name = given_twice(given); !name.empty())
     return refused(name + " is given twice: keep one of the two");
   const bool takes_word = result.command == "inspect" || result.command == "list" ||
                           result.command == "check" || result.command == "new";
   const std::size_t words = takes_word ? 2 : 1;
-  for (std::size_t i = words; i < given.size(); ++i)
+  for (std::size_t i = words; result.command != "compare" && i < given.size(); ++i)
     if (!is_option(given[i]) && !is_option(given[i - 1])) return refused(left_over(given[i]));
   // PETSc reads these on one rank alone while the others wait.
   for (std::size_t i = 1; i < given.size(); ++i)

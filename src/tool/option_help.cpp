@@ -70,7 +70,7 @@ void print_options(const std::string &command = "") {
 
 void print_command(const Command &command) {
   std::printf("%s\n  %s\n", command.usage.c_str(), command.does.c_str());
-  if (command.name == "list" || command.name == "inspect" || command.name == "new") return;
+  if (!command.options) return;
   print_options(command.name);
   std::printf("Those of a case: rbvi -help -case FILE; of PETSc's objects, outputs: rbvi -help\n");
 }

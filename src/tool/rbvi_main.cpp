@@ -23,11 +23,13 @@ void command_help(const Invocation &invocation, const Registry &registry) {
 void run_command(const Invocation &invocation, const Registry &registry) {
   const std::string &command = invocation.command;
   const int rank = rank_of(PETSC_COMM_WORLD);
-  if (command == "list" || command == "help" || command == "inspect" || command == "new") {
+  if (command == "list" || command == "help" || command == "inspect" || command == "new" ||
+      command == "compare") {
     if (rank != 0) return;
     if (command == "list") command_list(invocation.file, registry);
     if (command == "help") command_help(invocation, registry);
     if (command == "new") command_new(invocation.file, invocation.topic);
+    if (command == "compare") command_compare(invocation.files, invocation.topic, registry);
     if (command == "inspect") command_inspect(invocation.file, registry);
     return;
   }

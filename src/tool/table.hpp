@@ -77,11 +77,12 @@ const std::vector<Option> &tool_options();
 
 struct Command {
   std::string name, does, usage;
+  bool options = true; ///< of the table
 };
 /// Those of rbvi but help.
 const std::vector<Command> &commands();
 
-/// Whether it is for that command.
+/// Whether it is for that command of the table.
 bool serves(const Option &option, const std::string &command);
 
 /// The one of this name; null: there is none. A parameter of such a name (mu alone, see

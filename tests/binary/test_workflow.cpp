@@ -12,6 +12,49 @@ struct Workflow : InDirectory {
   }
 };
 
+TEST_F(Workflow, RunsThatWereVerifiedStandSideBySide) {
+  make("one");
+  make("two", "-pod_tolerance 1e-2 -cone_tolerance 1e-1");
+  output_of(rbvi(1, "offline -case case.yaml -out three"));
+  const std::string out = output_of(rbvi(1, "compare one two/model.h5 -csv runs.csv"));
+  EXPECT_TRUE(contains(out, "wrote runs.csv")) << out;
+  for (const char *row :
+       {"scene ", "functions of u ", "of the multipliers ", "error of u ", "error of energy ",
+        "error of peak_pressure ", "ms/query ", "offline s ", "model MB "})
+    EXPECT_EQ(lines_with(out, row), 1) << row << "\n" << out;
+  EXPECT_FALSE(contains(out, "kkt_residual"));
+  std::istringstream table(slurp("runs.csv"));
+  std::string header, first, second, rest;
+  std::getline(table, header);
+  std::getline(table, first);
+  std::getline(table, second);
+  EXPECT_FALSE(std::getline(table, rest));
+  const std::vector<std::string> names = split(header, ','), one = split(first, ','),
+                                 two = split(second, ',');
+  ASSERT_EQ(one.size(), names.size());
+  ASSERT_EQ(two.size(), names.size());
+  EXPECT_EQ(one.front(), "\"one\"");
+  EXPECT_EQ(two.front(), "\"two/model.h5\"");
+  const auto number = [&](const std::vector<std::string> &row, const std::string &name) {
+    return parse_number(row.at(std::ranges::find(names, name) - names.begin()), name);
+  };
+  EXPECT_GT(number(one, "functions of u"), number(two, "functions of u"));
+  EXPECT_LT(number(one, "error of u"), number(two, "error of u"));
+  EXPECT_GT(number(two, "ms/query"), 0);
+  EXPECT_EQ(number(two, "training samples"), 8);
+  const Finished unverified = shell(rbvi(1, "compare one three"));
+  EXPECT_EQ(unverified.status, 2);
+  EXPECT_EQ(unverified.err,
+            "rbvi: three was not verified: rbvi verify -out three measures its errors\n");
+  EXPECT_TRUE(contains(shell(rbvi(2, "compare one four")).err, "rbvi: four "));
+  EXPECT_TRUE(contains(shell(rbvi(1, "compare one two -csv one/model.h5")).err, "overwrite"));
+  EXPECT_EQ(shell(RBVI_FIGURES " one two").status, 0);
+  EXPECT_TRUE(fs::exists("figures/compare.pdf"));
+  const Finished missing = shell(RBVI_FIGURES " one three");
+  EXPECT_EQ(missing.status, 1);
+  EXPECT_TRUE(contains(missing.err, "run rbvi verify -out three first")) << missing.err;
+}
+
 TEST_F(Workflow, ErrorsAndTimesAreOfTheOutputsThatAreAsked) {
   output_of(rbvi(1, "offline -case case.yaml -out run"));
   const std::string all = output_of(rbvi(1, "verify -verify_stability no -out run"));

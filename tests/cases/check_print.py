@@ -2,7 +2,8 @@
 """check_print.py RUNS: what figures look like in a column of 88 mm, by matplotlib's own boxes.
 
 RUNS is of tests/docs/small_runs.py. Text has 6 points or more, no two texts overlap, none is cut, no
-axes are empty, and labels of physical quantities have their unit. One run of each kind is drawn.
+axes are empty, and labels of physical quantities have their unit. One run of each kind is drawn,
+and all of them side by side.
 """
 
 import sys
@@ -98,6 +99,7 @@ def main(runs):
     figure_tools.write = measure
     for run in [*(runs / name for name in RUNS), *(runs / "checks" / name / "u.vtu" for name in CHECKED)]:
         figures.main([str(run)])
+    figures.main([str(runs / name) for name in RUNS])
     print("\n".join(wrong) or f"{count} figures can be printed")
     return 1 if wrong or count < 40 else 0
 

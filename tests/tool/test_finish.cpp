@@ -84,6 +84,12 @@ TEST(ReadInvocation, CommandFileAndOptions) {
             (std::vector<std::string>{"rbvi", "-case", "c.yaml", "-load", "-20"}));
   EXPECT_EQ(offline.pointers().back(), nullptr);
   EXPECT_EQ(invocation({"rbvi", "inspect", "m.h5"}).file, "m.h5");
+  EXPECT_EQ(invocation({"rbvi", "run", "c.yaml", "-train", "4"}).arguments,
+            (std::vector<std::string>{"rbvi", "-case", "c.yaml", "-train", "4"}));
+  const Invocation runs = invocation({"rbvi", "compare", "a", "b/model.h5", "--csv", "c.csv"});
+  EXPECT_EQ(runs.files, (std::vector<std::string>{"a", "b/model.h5"}));
+  EXPECT_EQ(runs.topic, "c.csv");
+  EXPECT_EQ(runs.arguments.size(), 1U);
   EXPECT_EQ(invocation({"rbvi", "solve", "--help"}).command, "help");
   EXPECT_EQ(invocation({"rbvi", "solve", "--help"}).topic, "solve");
   EXPECT_EQ(invocation({"rbvi"}).command, "help");
@@ -99,6 +105,9 @@ TEST(ReadInvocation, MistakesOfTheCommand) {
                                             {"rbvi", "inspect"},
                                             {"rbvi", "inspect", "a", "b"},
                                             {"rbvi", "inspect", "a", "-b"},
+                                            {"rbvi", "compare", "a"},
+                                            {"rbvi", "compare", "a", "b", "-mu", "1"},
+                                            {"rbvi", "run", "a", "b"},
                                             {"rbvi", "list", "all", "more"},
                                             {"rbvi", "list", "-all"},
                                             {"rbvi", "solve", "-mu", "1", "--mu", "2"},

@@ -52,4 +52,10 @@ void command_new(const std::string &name, const std::string &mesh);
 void command_list(const std::string &folder, const Registry &registry);
 void command_inspect(const std::string &file, const Registry &registry);
 
+/// Prints sizes, errors and times of the models of run folders, or of model files, a column each:
+/// relative errors, those of outputs over their range, the largest that verify found. With `csv` a
+/// file of a row each. Throws bad_input for a run that has no model or was not verified. Serial.
+void command_compare(const std::vector<std::string> &given, const std::string &csv,
+                     const Registry &registry);
+
 } // namespace rbvi

@@ -13,8 +13,9 @@ namespace rbvi {
 /// The command line: command, its file (inspect) or scene (help), and what PETSc is to see.
 struct Invocation {
   std::string command, file;
-  std::string topic; ///< help: the command that is asked about; new: the mesh
-  bool json = false; ///< help: as JSON
+  std::string topic; ///< help: the command that is asked about; new: the mesh; compare: -csv
+  std::vector<std::string> files{};           ///< compare: run folders, model files
+  bool json = false;                          ///< help: as JSON
   mutable std::vector<std::string> arguments; ///< program name and options, dashes normalised
   std::optional<int> status;                  ///< set: nothing to run, exit with this
   std::string message;                        ///< printed then
