@@ -14,25 +14,27 @@ struct Use {
 };
 
 constexpr Use uses[] = {{"mu", "solve"},
-                        {"vtu", "solve check"},
+                        {"vtu", "solve check run"},
                         {"csv", "solve"},
                         {"plan", "offline"},
-                        {"run", "check"},
+                        {"run", "check run"},
                         {"bench_growth", "bench"},
-                        {"train", "offline"},
-                        {"valid", "verify bench"},
-                        {"verify_stability", "verify"},
-                        {"online_method", "offline verify bench"},
-                        {"nitsche_quadrature", "offline"},
-                        {"nitsche_quadrature_tolerance", "offline"},
-                        {"nitsche_eim_tolerance", "offline"},
-                        {"nitsche_eim_pairs", "offline"},
-                        {"nitsche_eim_validation", "offline"},
-                        {"Sweep", "offline verify bench"},
-                        {"Bases", "offline"},
-                        {"Stability", "offline"},
-                        {"Separation", "offline"},
-                        {"Multipliers", "offline"}};
+                        {"convergence", "bench"},
+                        {"train", "offline run"},
+                        {"valid", "verify bench run"},
+                        {"only", "verify run"},
+                        {"verify_stability", "verify run"},
+                        {"online_method", "offline verify bench run"},
+                        {"nitsche_quadrature", "offline run"},
+                        {"nitsche_quadrature_tolerance", "offline run"},
+                        {"nitsche_eim_tolerance", "offline run"},
+                        {"nitsche_eim_pairs", "offline run"},
+                        {"nitsche_eim_validation", "offline run"},
+                        {"Sweep", "offline verify bench run"},
+                        {"Bases", "offline run"},
+                        {"Stability", "offline run"},
+                        {"Separation", "offline run"},
+                        {"Multipliers", "offline run"}};
 
 /// "": all.
 std::string commands_of(const Option &option) {
@@ -45,6 +47,8 @@ std::string commands_of(const Option &option) {
 
 const std::vector<Command> &commands() {
   static const std::vector<Command> all{
+      {"run", "check, offline, verify and figures of a case, a line for each",
+       "rbvi run FILE [-out DIRECTORY] [options]"},
       {"offline", "snapshots, bases, interpolation, reduced model into -out",
        "rbvi offline -case FILE -out DIRECTORY [options]"},
       {"verify", "reduced against high-fidelity over the validation set",

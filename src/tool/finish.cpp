@@ -72,7 +72,7 @@ std::string take_word(Invocation &result, std::vector<std::string> &given) {
   const std::string &command = result.command;
   if (command == "compare") return take_runs(result, given);
   const bool word = given.size() > 1 && !is_option(given[1]);
-  if (command == "check" && word) given.insert(given.begin() + 1, "-case");
+  if ((command == "check" || command == "run") && word) given.insert(given.begin() + 1, "-case");
   if (command == "new" && given.size() == 4 && given[2] == "-mesh") {
     result.topic = given[3];
     given.resize(2);
@@ -132,7 +132,8 @@ Invocation read_invocation(int argc, char **argv) {
   if (const std::string name = given_twice(given); !name.empty())
     return refused(name + " is given twice: keep one of the two");
   const bool takes_word = result.command == "inspect" || result.command == "list" ||
-                          result.command == "check" || result.command == "new";
+                          result.command == "check" || result.command == "new" ||
+                          result.command == "run";
   const std::size_t words = takes_word ? 2 : 1;
   for (std::size_t i = words; result.command != "compare" && i < given.size(); ++i)
     if (!is_option(given[i]) && !is_option(given[i - 1])) return refused(left_over(given[i]));

@@ -23,14 +23,6 @@ namespace fs = std::filesystem;
 
 const std::string told = "rbvi: "; ///< before what the probe prints
 
-/// As one word of a shell.
-std::string quoted(const std::string &text) {
-  std::string word = "'";
-  for (const char c : text)
-    word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
-
 std::string bytes_of(const fs::path &file) {
   std::ostringstream bytes;
   bytes << std::ifstream(file, std::ios::binary).rdbuf();
@@ -67,7 +59,7 @@ public:
         "General.Terminal = 1;\nGeneral.Verbosity = 5;\n"; // the geometry may say less
     for (const auto &[name, value] : numbers_) {
       check_name(name);
-      options_ += " -setnumber " + quoted(name) + " " + shortest_number(value);
+      options_ += " -setnumber " + in_shell_quotes(name) + " " + shortest_number(value);
       const std::string print = "Printf(\"" + told + name + " %.17g\", " + name + ");\n";
       lines += is_option(name) ? print : "If (Exists(" + name + "))\n" + print + "EndIf\n";
     }
@@ -78,7 +70,7 @@ public:
   /// Returns what gmsh prints. Throws bad_input, with what it says, where it makes no mesh.
   std::string mesh(const fs::path &mesh) const {
     const auto [status, log] =
-        run("-2 -order 1 -format msh41" + options_ + " -o " + quoted(mesh.string()));
+        run("-2 -order 1 -format msh41" + options_ + " -o " + in_shell_quotes(mesh.string()));
     std::error_code ignored;
     if (status != 0 || !fs::exists(mesh, ignored))
       throw bad_input("gmsh cannot mesh '" + file_ + "': " + last_error(log));
@@ -115,10 +107,10 @@ private:
   }
   /// The status of gmsh and what it prints.
   std::pair<int, std::string> run(const std::string &how) const {
-    const int status =
-        std::system(("gmsh " + how + " " + quoted(file_) + " " + quoted(probe_.file.string()) +
-                     " > " + quoted(log_.file.string()) + " 2>&1 < /dev/null")
-                        .c_str());
+    const int status = std::system(("gmsh " + how + " " + in_shell_quotes(file_) + " " +
+                                    in_shell_quotes(probe_.file.string()) + " > " +
+                                    in_shell_quotes(log_.file.string()) + " 2>&1 < /dev/null")
+                                       .c_str());
     return {status, bytes_of(log_.file)};
   }
   /// What the probe prints of a number; NaN: there is none.
@@ -161,6 +153,13 @@ std::uint64_t make_mesh(const std::string &geo, const std::map<std::string, doub
 }
 
 } // namespace
+
+std::string in_shell_quotes(const std::string &text) {
+  std::string word = "'";
+  for (const char c : text)
+    word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
 
 fs::path folder_of_meshes() {
   return fs::temp_directory_path() / ("rbvi_meshes_" + std::to_string(::getuid()));

@@ -9,6 +9,9 @@
 
 namespace rbvi {
 
+/// A text as one word of a shell.
+std::string in_shell_quotes(const std::string &text);
+
 /// Where meshes of geometries are kept that belong to no run: a folder of this user.
 std::filesystem::path folder_of_meshes();
 

@@ -228,6 +228,8 @@ ToolOptions read_options(MPI_Comm comm, const std::string &command, const Regist
     for (const auto &[name, where] : origin)
       names.push_back(name);
     ToolOptions options = read_values(names, given, command_line);
+    if (command == "run" && options.out.empty())
+      options.out = std::filesystem::path("run") / options.scene.name;
     mesh_geometry(comm, options.out, options);
     return options;
   } catch (const Error &error) {

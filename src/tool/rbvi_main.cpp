@@ -36,6 +36,7 @@ void run_command(const Invocation &invocation, const Registry &registry) {
   const ToolOptions options = read_options(PETSC_COMM_WORLD, command, registry);
   if (command == "offline") command_offline(options);
   if (command == "check") command_check(options, options);
+  if (command == "run") command_run(options);
   if (command == "solve") command_solve(options, options);
   if (command == "verify") command_verify(options);
   if (command == "bench") command_bench(options);

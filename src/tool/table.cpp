@@ -128,8 +128,9 @@ std::vector<Option> of_runs(ToolOptions &o) {
        "none"},
       {"scene", OptionKind::text,
        "name of a scene that a program of its own adds to rbvi, in place of -case", "name"},
-      of_command(text("out", OptionKind::text, "directory", o.out,
-                      "directory of the run: everything is written there")),
+      of_command(text(
+          "out", OptionKind::text, "directory", o.out,
+          "directory of the run: everything is written there; of rbvi run by default run/NAME")),
       {"parameters", OptionKind::text,
        "names of the parameters that vary, in the order of -mu; the others keep one value", "names",
        "the scene's"},

@@ -55,6 +55,33 @@ TEST_F(Workflow, RunsThatWereVerifiedStandSideBySide) {
   EXPECT_TRUE(contains(missing.err, "run rbvi verify -out three first")) << missing.err;
 }
 
+TEST_F(Workflow, OneCommandTakesAllSteps) {
+  const std::string out = output_of(rbvi(2, "run case.yaml -verify_stability no"));
+  for (const char *step : {"check ", "offline ", "verify ", "figures "})
+    EXPECT_EQ(lines_with(out, step), 1) << out;
+  EXPECT_EQ(std::ranges::count(out, '\n'), 6) << out;
+  EXPECT_TRUE(contains(out, "; largest errors ")) << out;
+  const std::string run = "run/membrane_obstacle";
+  EXPECT_TRUE(fs::exists(run + "/figures/errors.png"));
+  EXPECT_TRUE(contains(slurp(run + "/run.log"), "no defect was found"));
+  EXPECT_TRUE(contains(slurp(run + "/run.log"), "Relative errors over 3 validation mu"));
+  const std::string again = output_of(rbvi(1, "verify -verify_stability yes -out " + run));
+  EXPECT_TRUE(contains(again, "Inf-sup constants"));
+}
+
+TEST_F(Workflow, TheFirstStepThatFailsIsTheLast) {
+  const Finished failed = shell(rbvi(1, "run case.yaml -out here -hf_method uzawa "
+                                        "-uzawa_max_iterations 10"));
+  EXPECT_EQ(failed.status, 1) << failed.err;
+  EXPECT_TRUE(contains(line_with(failed.out, "check "), "failed")) << failed.out;
+  EXPECT_EQ(lines_with(failed.out, "offline "), 0);
+  EXPECT_EQ(lines_with(failed.err, "rbvi: "), 1) << failed.err;
+  EXPECT_FALSE(fs::exists("here"));
+  expect_all_refused({{"run case.yaml -plan", "-plan has no effect on rbvi run"},
+                      {"run case.yaml -mu 0.2,0,0", "it is for rbvi solve"},
+                      {"run case.yaml -train grid:2", "grid:2 has 1 count"}});
+}
+
 TEST_F(Workflow, ErrorsAndTimesAreOfTheOutputsThatAreAsked) {
   output_of(rbvi(1, "offline -case case.yaml -out run"));
   const std::string all = output_of(rbvi(1, "verify -verify_stability no -out run"));

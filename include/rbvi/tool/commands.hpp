@@ -45,6 +45,10 @@ std::vector<std::filesystem::path> write_check(const std::string &vtu, const Pro
 /// the world.
 void command_check(const MeasureOptions &options, const SolveOptions &solve);
 
+/// check, offline, verify and figures of a case, a line for each, whose own lines go into run.log
+/// in the run directory; the first that fails is the last. Collective on the world.
+void command_run(ToolOptions options);
+
 /// Writes NAME/case.yaml, a case to begin with; of a Gmsh mesh, if one is named, with its parts.
 void command_new(const std::string &name, const std::string &mesh);
 
