@@ -178,6 +178,7 @@ void bench(const MeasureOptions &options, const ReducedModel &model, int ranks) 
 
 void command_bench(const MeasureOptions &given) {
   if (!given.growth.empty()) return command_growth(given);
+  if (!given.convergence.empty()) return command_convergence(given);
   const MPI_Comm world = PETSC_COMM_WORLD;
   const int rank = rank_of(world), ranks = ranks_of(world);
   const ReducedModel model = model_of_run(world, given);

@@ -13,6 +13,7 @@
 #include "rbvi/solve/high_fidelity.hpp"
 #include "rbvi/tool/cases.hpp"
 #include "rbvi/tool/commands.hpp"
+#include "scene_tests.hpp"
 #include "table.hpp"
 
 #include <algorithm>
@@ -24,9 +25,6 @@
 
 namespace rbvi {
 
-namespace {
-
-/// The scene with all parameters free, so that one problem serves all tests.
 Scene with_all_free(Scene scene) {
   ParameterSpace &space = scene.parameters;
   space.free.resize(space.all.size());
@@ -42,6 +40,8 @@ Mu place_of(const SceneTest &test, const ParameterSpace &space) {
   }
   return mu;
 }
+
+namespace {
 
 /// Prints one comparison; returns whether it passes.
 bool compare(const SceneTest &test, const std::string &output, double expected,

@@ -179,6 +179,11 @@ std::vector<Option> of_runs(ToolOptions &o) {
                  "bench: measure what offline costs, stage by stage, on the meshes with these "
                  "-mesh_refine, with every number of ranks per solve that divides the ranks or "
                  "with that of the command line; run time against error is then not measured")),
+      of_command(rising(
+          "convergence", refinements, o.convergence,
+          "bench: outputs of full solves on the meshes with these -mesh_refine, at the tests "
+          "of the case, without any at the defaults of its parameters; observed orders, "
+          "Richardson's values, and how far these are from what the tests expect")),
       of_command(flag("plan", o.plan,
                       "print which stages would run, with the memory and time "
                       "that are foreseen, and stop")),

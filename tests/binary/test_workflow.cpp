@@ -101,6 +101,20 @@ TEST_F(Workflow, ErrorsAndTimesAreOfTheOutputsThatAreAsked) {
   EXPECT_EQ(wrong.err, "rbvi: the model has no output 'energie': the nearest is 'energy'\n");
 }
 
+TEST_F(Workflow, OutputsOnRefinedMeshes) {
+  spill("rod.yaml", "case: " RBVI_CASES "/known/hanging_bar\n");
+  const std::string out = output_of(rbvi(2, "bench -case rod.yaml -convergence 0,1,2 -out run"));
+  EXPECT_GT(lines_with(out, "stopped "), 2) << out;
+  std::istringstream table(slurp("run/bench/convergence.csv"));
+  std::string line;
+  std::getline(table, line);
+  EXPECT_EQ(line, "test,output,refine_0,refine_1,refine_2,order_2,richardson,expected,off_by");
+  int expected = 0;
+  while (std::getline(table, line))
+    expected += line.ends_with(",") ? 0 : 1;
+  EXPECT_GT(expected, 0) << out;
+}
+
 /// Of a plan what can take longest, and what all of it takes.
 TEST_F(Workflow, APlanForeseesCondensationAndSelfCheck) {
   for (const std::string parameters : {"radius", "radius,poisson_ratio"}) {

@@ -27,11 +27,16 @@ void write_solution(Problem &problem, const std::string &vtu, const Mu &mu,
 /// into the model file. Collective on the world.
 void command_verify(const MeasureOptions &options);
 
-/// Run time against error, or (MeasureOptions::growth) command_growth. Collective on the world.
+/// Run time against error, or command_growth (MeasureOptions::growth), or command_convergence.
+/// Collective on the world.
 void command_bench(const MeasureOptions &options);
 
 /// What offline takes on several meshes, by several ranks per solve. Collective on the world.
 void command_growth(const MeasureOptions &options);
+
+/// Outputs of full solves on several meshes (MeasureOptions::convergence), into
+/// bench/convergence.csv where a run directory is named. Collective on the world.
+void command_convergence(const MeasureOptions &options);
 
 /// What check writes beside the file of -vtu: the mesh with its groups, its surface, and of each
 /// contact the partners at some parameters. The names, none without that option; and the files, by
