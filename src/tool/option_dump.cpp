@@ -49,6 +49,16 @@ std::string of_option(const Option &option) {
                  {"choices", list(option.choices, of_choice)}});
 }
 
+std::string of_command(const Command &command) {
+  std::vector<std::string> names;
+  for (const Option &option : tool_options())
+    if (command.options && serves(option, command.name)) names.push_back(option.name);
+  return object({{"name", quoted(command.name)},
+                 {"does", quoted(command.does)},
+                 {"usage", quoted(command.usage)},
+                 {"options", list(names, quoted)}});
+}
+
 std::string of_key(const CaseKey &key) {
   return object({{"table", quoted(key.table)},
                  {"name", quoted(key.name)},
@@ -99,7 +109,8 @@ std::string options_dump(const Registry &registry) {
   std::vector<SceneEntry> scenes = registry;
   for (SceneEntry &entry : cases_in("cases"))
     scenes.push_back(std::move(entry));
-  return object({{"options", list(tool_options(), of_option)},
+  return object({{"commands", list(commands(), of_command)},
+                 {"options", list(tool_options(), of_option)},
                  {"keys", list(case_keys(), of_key)},
                  {"scenes", list(scenes, of_scene)},
                  {"solvers", list(solver_objects(), of_solver)},

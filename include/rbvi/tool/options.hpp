@@ -114,8 +114,8 @@ void warn_of_eigen_options(MPI_Comm comm, const OfflineOptions &options);
 void print_help(const Registry &registry, const std::string &scene,
                 const std::string &command = "");
 
-/// All options of both programs, keys of case files and scenes, those of the folder cases among
-/// them, as JSON.
+/// All commands, options of both programs, keys of case files and scenes, those of the folder cases
+/// among them, as JSON.
 std::string options_dump(const Registry &registry);
 
 /// Prints the names and facts that a mesh file for the scene must have.
