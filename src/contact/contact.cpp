@@ -277,14 +277,16 @@ std::string said_of(const Contact &contact, Index row) {
 }
 
 Matrix by_node(const Contact &contact, const Vector &lambda) {
-  Matrix result = Matrix::Zero(contact.nodes(), 2);
+  Matrix result = Matrix::Zero(contact.nodes(), contact.interfaces.front()->mesh().dim);
   Index first = 0;
   for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
     const DualSpace &dual = contact.interfaces[i]->dual();
     const Index nodes = dual.nodes();
     const auto own = lambda.segment(contact.first_row[i], dual.size());
     result.col(0).segment(first, nodes) = own.head(nodes);
-    if (dual.components == 2) result.col(1).segment(first, nodes) = own.tail(nodes);
+    for (Index k = 0; k + 1 < dual.components; ++k)
+      result.col(1 + k).segment(first, nodes) =
+          own.tail((dual.components - 1) * nodes)(Eigen::seqN(k, nodes, dual.components - 1));
     first += nodes;
   }
   return result;

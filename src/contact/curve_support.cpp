@@ -5,6 +5,7 @@
 #include "rbvi/contact/support.hpp"
 #include "rbvi/contact/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
+#include "surface_support.hpp"
 #include "trace_points.hpp"
 
 #include <algorithm>
@@ -373,13 +374,15 @@ NodalEvaluation CurveSupport::nodal_at(const FullMu &mu) const {
 
 ContactRecipe by_multipliers(const RigidContact &rigid) {
   ContactRecipe recipe;
-  recipe.entities = {InterfaceEntities::Kind::curves, {rigid.boundary}, {}, rigid.curved};
+  recipe.entities = {InterfaceEntities::Kind::facets, {rigid.boundary}, {}, rigid.curved};
   add_friction(rigid.friction, recipe);
   recipe.follows_state = rigid.facing.follows_state;
   recipe.separable = !recipe.follows_state;
   recipe.nodal = rigid.lumped && recipe.separable;
   recipe.keeps_nodes = true;
-  recipe.make = [rigid](const Scene &scene, InterfaceMesh mesh) {
+  recipe.make = [rigid](const Scene &scene,
+                        InterfaceMesh mesh) -> std::unique_ptr<ContactInterface> {
+    if (scene.dim == 3) return surface_support(scene, std::move(mesh), rigid);
     return std::make_unique<CurveSupport>(scene, std::move(mesh), rigid);
   };
   return recipe;

@@ -86,6 +86,7 @@ Cell EntitySum::reference_entity(Index entity) const {
   const int *nodes = mesh_.nodes_of(entity);
   for (std::size_t i = 0; i <= static_cast<std::size_t>(entity_dim_); ++i)
     cell.reference[i] = mesh_.points[nodes[i]];
+  cell.nodes = nodes;
   if (!imposed_by_.empty())
     cell.imposed_by = imposed_by_.data() + entity * mesh_.per_entity * mesh_.components;
   return cell;
@@ -230,7 +231,7 @@ void EntitySum::set_pattern(const WantedNodes &wanted) {
 
 std::vector<Point> EntitySum::mapped_vertices(const FullMu &mu,
                                               const std::vector<bool> &entities) const {
-  std::vector<bool> needed(dual_of_vertex_.size(), entities.empty() || entity_dim_ == 1);
+  std::vector<bool> needed(dual_of_vertex_.size(), entities.empty() || entity_dim_ < mesh_.dim);
   for (std::size_t e = 0; e < entities.size(); ++e)
     for (int a = 0; a <= entity_dim_ && entities[e]; ++a)
       needed[mesh_.nodes_of(static_cast<Index>(e))[a]] = true;
@@ -248,30 +249,31 @@ std::vector<Point> EntitySum::mapped_vertices(const FullMu &mu,
 template <class Visit>
 void EntitySum::visit_entities(const FullMu &mu, const std::vector<Point> &mapped,
                                const std::vector<bool> &entities, Visit &&visit) const {
-  if (entity_dim_ == 1) check_lengths(mu, mapped);
+  if (entity_dim_ < mesh_.dim) check_sizes(mu, mapped);
   for (Index e = 0; e < mesh_.count(); ++e) {
     if (!entities.empty() && !entities[e]) continue;
     Cell cell = reference_entity(e);
     const int *nodes = mesh_.nodes_of(e);
     for (std::size_t i = 0; i <= static_cast<std::size_t>(entity_dim_); ++i)
       cell.mapped[i] = mapped[nodes[i]];
-    if (entity_dim_ > 1) check_orientation(scene_, mu, cell);
+    if (entity_dim_ == mesh_.dim) check_orientation(scene_, mu, cell);
     visit(e, cell);
   }
 }
 
-void EntitySum::check_lengths(const FullMu &mu, const std::vector<Point> &mapped) const {
+void EntitySum::check_sizes(const FullMu &mu, const std::vector<Point> &mapped) const {
   Vector squared(mesh_.count());
   for (Index e = 0; e < mesh_.count(); ++e) {
     const int *nodes = mesh_.nodes_of(e);
-    const Point &a = mapped[nodes[0]], &b = mapped[nodes[1]];
-    squared[e] = (b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]);
+    const Point &a = mapped[nodes[0]], along = mapped[nodes[1]] - a;
+    const Point size = entity_dim_ == 1 ? along : cross(along, mapped[nodes[2]] - a);
+    squared[e] = dot(size, size);
   }
   const double least = 1e-24 * (squared.size() > 0 ? squared.maxCoeff() : 0);
   for (Index e = 0; e < mesh_.count(); ++e)
     if (!(squared[e] > least))
-      throw failure("edge " + std::to_string(e) +
-                    " of the contact boundary has no length, mapped at " +
+      throw failure((entity_dim_ == 1 ? "edge " : "triangle ") + std::to_string(e) +
+                    " of the contact boundary has no size, mapped at " +
                     describe(scene_.parameters, mu));
 }
 

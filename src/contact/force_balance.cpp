@@ -4,6 +4,7 @@
 #include "rbvi/core/formula.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/element/lagrange.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,24 +15,35 @@ namespace rbvi {
 
 namespace {
 
-/// The terms of a force on the motions: f_x, f_y, and x f_y - y f_x.
+/// The terms of a force on the motions: itself, and at x force.
 void add(const Point &at, const Point &force, double sign, Resultant &sum, Resultant &sizes) {
-  const double first = at[0] * force[1], second = at[1] * force[0];
-  sum[0] += sign * force[0];
-  sum[1] += sign * force[1];
-  sum[2] += sign * (first - second);
-  sizes[0] += std::abs(force[0]);
-  sizes[1] += std::abs(force[1]);
-  sizes[2] += std::abs(first) + std::abs(second);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t d = (c + 1) % 3, e = (c + 2) % 3;
+    const double first = at[d] * force[e], second = at[e] * force[d];
+    sum[c] += sign * force[c];
+    sum[3 + c] += sign * (first - second);
+    sizes[c] += std::abs(force[c]);
+    sizes[3 + c] += std::abs(first) + std::abs(second);
+  }
+}
+
+/// "(1, 2)": the forces.
+std::string forces_text(const Scene &scene, const Resultant &sum) {
+  std::vector<std::string> parts;
+  for (int c = 0; c < scene.dim; ++c)
+    parts.push_back(short_number(sum[static_cast<std::size_t>(c)]));
+  return "(" + joined(parts) + ")";
 }
 
 /// Where the nodes are on the straight, mapped edges.
 std::vector<Point> arms(const Scene &scene, const FullMu &mu, const InterfaceMesh &mesh) {
   std::vector<Point> result = images(scene.map, mu, mesh.points);
-  for (Index e = 0; e < mesh.count() && mesh.per_entity == 3; ++e) {
-    const int *nodes = mesh.nodes_of(e);
-    result[nodes[2]] = (result[nodes[0]] + result[nodes[1]]) / 2;
-  }
+  for (Index e = 0; e < mesh.count(); ++e)
+    for (int middle = mesh.vertices(); middle < mesh.per_entity; ++middle) {
+      const auto [i, j] = simplex_edges[middle - mesh.vertices()];
+      const int *nodes = mesh.nodes_of(e);
+      result[nodes[middle]] = (result[nodes[i]] + result[nodes[j]]) / 2;
+    }
   return result;
 }
 
@@ -57,12 +69,12 @@ void TwoRoads::add_node(const Point &at, const Point &force) {
 
 double TwoRoads::difference() const {
   // A component that vanishes is round-off of the others.
-  const double force = std::hypot(sizes[0], sizes[1]);
-  const Resultant scales{force, force, sizes[2]};
+  const std::array scales{std::hypot(sizes[0], sizes[1], sizes[2]),
+                          std::hypot(sizes[3], sizes[4], sizes[5])};
   double result = 0;
-  for (std::size_t i = 0; i < scales.size(); ++i)
+  for (std::size_t i = 0; i < sizes.size(); ++i)
     if (const double apart = std::abs(by_points[i] - by_nodes[i]); !(apart == 0))
-      result = larger(result, apart / scales[i]);
+      result = larger(result, apart / scales[i / 3]);
   return result;
 }
 
@@ -78,7 +90,7 @@ std::vector<TwoRoads> two_roads(const Scene &scene, ContactInterface &interface,
     for (Index i = 0; i < nodal.weights.size(); ++i)
       points.push_back({0, {}, {nodal.weights[i] * lambda[i], 0, 0}});
   }
-  if (points.empty() || (mesh.dim != 2 && !membrane)) return {};
+  if (points.empty()) return {};
   std::vector<TwoRoads> sides(mesh.parts.size());
   for (const auto &[part, at, force] : points)
     sides[part].add_point(at, force);
@@ -90,7 +102,10 @@ std::vector<TwoRoads> two_roads(const Scene &scene, ContactInterface &interface,
   for (std::size_t part = 0; part < sides.size(); ++part)
     for (int k = 0; k < mesh.parts[part]; ++k, ++node) {
       const Index first = mesh.components * static_cast<Index>(node);
-      sides[part].add_node(at[node], {forces[first], membrane ? 0 : forces[first + 1], 0});
+      Point force{};
+      for (int c = 0; c < mesh.components; ++c)
+        force[c] = forces[first + c];
+      sides[part].add_node(at[node], force);
     }
   return sides;
 }
@@ -126,10 +141,9 @@ void check_forces(const Scene &scene, const Contact &contact, const FullMu &mu,
       if (const double apart = sides[side].difference(); !(apart <= tolerance))
         throw failure("the forces of '" + contact.names[i] + "' on the body of the boundary '" +
                       scene.contacts[i].entities.parts[side] + "' do not balance: by pressures " +
-                      "and normals they are (" + short_number(sides[side].by_points[0]) + ", " +
-                      short_number(sides[side].by_points[1]) + "), by the equations that were " +
-                      "solved (" + short_number(sides[side].by_nodes[0]) + ", " +
-                      short_number(sides[side].by_nodes[1]) + "), " + short_number(apart) +
+                      "and normals they are " + forces_text(scene, sides[side].by_points) +
+                      ", by the equations that were solved " +
+                      forces_text(scene, sides[side].by_nodes) + ", " + short_number(apart) +
                       " of their terms apart, moments counted: does each function of this contact "
                       "return the same each time that it is asked?");
   }
@@ -146,7 +160,7 @@ void check_forces(const NitscheLayer &layer, const FullMu &mu, const Vector &u, 
     return whole ? *whole / image_count(layer.scene.mirrors) : by_nodes;
   };
   roads.by_points = {of_domain(outputs.horizontal_reaction, roads.by_nodes[0]),
-                     of_domain(outputs.reaction, roads.by_nodes[1]), 0};
+                     of_domain(outputs.reaction, roads.by_nodes[1])};
   if (const double apart = roads.difference(); !(apart <= tolerance))
     throw failure(
         "the forces of contact by Nitsche's method do not balance: by outputs they are (" +

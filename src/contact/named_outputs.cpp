@@ -6,6 +6,7 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/lagrange.hpp"
 #include "rbvi/element/output_sums.hpp"
+#include "surface_lines.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -206,8 +207,10 @@ std::vector<ContactLine> Lines::cut() const {
       const double from = cuts[i - 1], to = cuts[i];
       if (!(to > from)) continue;
       const std::array<double, 3> places{from, to, (from + to) / 2};
-      ContactLine line{{fields_at(k, places[0]), fields_at(k, places[1]), fields_at(k, places[2])},
-                       {}};
+      ContactLine line{
+          {fields_at(k, places[0]), fields_at(k, places[1]), fields_at(k, places[2])}, {}, 0};
+      const auto &[begin, end, middle] = line.fields;
+      line.measure = std::hypot(end[field::x] - begin[field::x], end[field::y] - begin[field::y]);
       for (OutputFields &fields : line.fields) {
         fields[field::contact] = contact.has((from + to) / 2) ? 1 : 0;
         fields[field::stick] = sticks.has((from + to) / 2) ? 1 : 0;
@@ -239,16 +242,14 @@ void add_lines(const std::vector<ContactLine> &lines, bool turned, OutputLines &
   };
   sums.add(lines.size(), on(&ContactLine::fields), on(&ContactLine::seen),
            [&](std::size_t line, const OutputFields &at) {
-             const auto &[first, last, middle] = lines[line].fields;
-             return std::hypot(last[field::x] - first[field::x], last[field::y] - first[field::y]) *
-                    circumference(turned, {at[field::x], 0, 0});
+             return lines[line].measure * circumference(turned, {at[field::x], 0, 0});
            });
 }
 
 } // namespace
 
 std::vector<ContactLine> contact_lines(const Grid &grid, const FrictionBound &bound, double least) {
-  if (grid.per_cell != 2) throw bad_input("outputs over contact are of curves");
+  if (grid.per_cell > 2) return surface_lines(grid, bound, least);
   return Lines(grid, bound, least).cut();
 }
 

@@ -361,7 +361,7 @@ ContactRecipe two_bodies(Pair pair) {
   // There is no traction through the air, nor where no partner is faced.
   pair.friction.only_in_contact = pair.friction.law == FrictionLaw::tresca;
   ContactRecipe recipe;
-  recipe.entities = {InterfaceEntities::Kind::curves, {pair.slave, pair.master}, {}, true};
+  recipe.entities = {InterfaceEntities::Kind::facets, {pair.slave, pair.master}, {}, true};
   if (is_of_heights(pair)) recipe.entities.components = {1};
   add_friction(pair.friction, recipe);
   recipe.separable = false;

@@ -101,12 +101,14 @@ double gap_error(const ContactInterface &interface, const Scene &scene, const Fa
   GapErrors errors(lambda.head(std::ssize(vertices)));
   for (std::size_t k = 0; k < vertices.size(); ++k) {
     const Index node = vertices[k];
-    const Point &x = interface.mesh().points[node],
-                moved = Point{u[2 * node], u[2 * node + 1], 0} +
-                        (scene.motion ? scene.motion(mu, x) : Point{});
+    const Point &x = interface.mesh().points[node];
+    Point by{};
+    for (Index c = 0; c < interface.mesh().components; ++c)
+      by[c] = u[interface.mesh().components * node + c];
+    const Point moved = by + (scene.motion ? scene.motion(mu, x) : Point{});
     const auto [normal, gap] = interface.constraint_at(mu, x);
     const double way = dot(normal, moved),
-                 left = gap - normal[0] * u[2 * node] - normal[1] * u[2 * node + 1];
+                 left = gap - normal[0] * by[0] - normal[1] * by[1] - normal[2] * by[2];
     try {
       errors.add(lambda[static_cast<Index>(k)], way, left,
                  facing.distance(mu, place(scene, facing, mu, x), moved));

@@ -79,14 +79,18 @@ void drop_plane_outputs(Outputs &outputs) {
 
 void make_whole(const MirrorPlanes &mirrors, Outputs &outputs) {
   const int images = image_count(mirrors);
-  for (const auto member : {&Outputs::normal_force, &Outputs::tangential_force, &Outputs::reaction,
-                            &Outputs::horizontal_reaction, &Outputs::contact_measure,
-                            &Outputs::contact_half_width, &Outputs::stick_half_width})
+  for (const auto member :
+       {&Outputs::normal_force, &Outputs::tangential_force, &Outputs::reaction,
+        &Outputs::horizontal_reaction, &Outputs::force_x, &Outputs::force_y, &Outputs::force_z,
+        &Outputs::contact_measure, &Outputs::contact_half_width, &Outputs::stick_half_width})
     if (std::optional<double> &of_domain = outputs.*member) *of_domain *= images;
   if (outputs.slip_directions) // an image slips the other way
     outputs.slip_directions = std::min(images * *outputs.slip_directions, 2.0);
   if (cancels(mirrors, 0)) outputs.horizontal_reaction.reset();
   if (cancels(mirrors, 1)) outputs.reaction.reset();
+  constexpr std::array forces{&Outputs::force_x, &Outputs::force_y, &Outputs::force_z};
+  for (std::size_t c = 0; c < forces.size(); ++c)
+    if (cancels(mirrors, c)) (outputs.*forces[c]).reset();
 }
 
 void support_outputs(const SupportState &state, Outputs &outputs) {

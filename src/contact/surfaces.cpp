@@ -8,9 +8,15 @@ namespace rbvi {
 
 namespace {
 
+/// From the centre, or the axis.
+Point out_of(const Circle &circle, const Point &x) {
+  const Point out = x - circle.centre;
+  return out - dot(out, circle.axis) * circle.axis;
+}
+
 const Circle &nearest_circle(const std::vector<Circle> &circles, const Point &x) {
   const auto distance = [&](const Circle &circle) {
-    return std::abs(norm(x - circle.centre) - circle.radius);
+    return std::abs(norm(out_of(circle, x)) - circle.radius);
   };
   const Circle *nearest = &circles.front();
   for (const Circle &circle : circles)
@@ -19,8 +25,9 @@ const Circle &nearest_circle(const std::vector<Circle> &circles, const Point &x)
 }
 
 Point on_circle(const Circle &circle, const Point &x) {
-  const Point out = x - circle.centre;
-  return circle.centre + circle.radius / norm(out) * out;
+  const Point out = out_of(circle, x);
+  return circle.centre + dot(x - circle.centre, circle.axis) * circle.axis +
+         circle.radius / norm(out) * out;
 }
 
 struct OnCircle {
@@ -29,17 +36,19 @@ struct OnCircle {
 };
 
 Point normal_of_circle(const Circle &circle, const Point &x) {
-  const Point out = x - circle.centre;
+  const Point out = out_of(circle, x);
   return (circle.hole ? -1 : 1) / norm(out) * out;
 }
 
 struct Plane {
   Point normal, pivot;
   std::function<Coefficient> position, tilt;
+  Point axis;
   SurfacePoint operator()(const FullMu &mu, const Point &y) const {
     const double angle = tilt ? tilt(mu) : 0, c = std::cos(angle), s = std::sin(angle);
-    const Point n{c * normal[0] - s * normal[1], s * normal[0] + c * normal[1], 0};
-    const double distance = position(mu) - (y[0] - pivot[0]) * n[0] - (y[1] - pivot[1]) * n[1];
+    const Point n = c * normal + s * cross(axis, normal) + (1 - c) * dot(axis, normal) * axis;
+    const double distance = position(mu) - (y[0] - pivot[0]) * n[0] - (y[1] - pivot[1]) * n[1] -
+                            (y[2] - pivot[2]) * n[2];
     if (!std::isfinite(distance))
       throw failure("the position or the tilt of a rigid plane is not finite");
     return {distance, -1.0 * n, 0};
@@ -56,6 +65,46 @@ template <class Number> std::function<Surface> disk_of(Number x, Number y, Numbe
     return SurfacePoint{distance - radius(mu), inverse * p, inverse};
   };
 }
+
+using Coefficients = std::array<std::function<Coefficient>, 3>;
+
+/// Throws bad_input for a direction whose length is not 1.
+void check_length(const Point &direction, const std::string &what) {
+  if (!(std::abs(norm(direction) - 1) <= 1e-12))
+    throw bad_input(what + " is " + place_text(direction) + ": give one of length 1");
+}
+
+Point point_at(const Coefficients &coefficients, const FullMu &mu) {
+  return {coefficients[0](mu), coefficients[1](mu), coefficients[2](mu)};
+}
+
+/// A sphere, or with an axis a cylinder.
+struct Round {
+  Coefficients centre;
+  Point axis;
+  std::function<Coefficient> radius;
+  SurfacePoint operator()(const FullMu &mu, const Point &y) const {
+    const Point from = y - point_at(centre, mu), out = from - dot(from, axis) * axis;
+    const double distance = norm(out);
+    if (!(distance > 0)) throw failure("a point of the body is in the middle of what is rigid");
+    return {distance - radius(mu), out / distance, 0};
+  }
+};
+
+struct Cone {
+  Coefficients apex;
+  Point axis;
+  std::function<Coefficient> angle;
+  SurfacePoint operator()(const FullMu &mu, const Point &y) const {
+    const Point from = y - point_at(apex, mu);
+    const double along = dot(from, axis), a = angle(mu), c = std::cos(a), s = std::sin(a);
+    const Point out = from - along * axis;
+    const double distance = norm(out);
+    if (!(distance * s + along * c > 0 && distance > 0))
+      throw failure("a point of the body faces the apex of a rigid cone, or is on its axis");
+    return {distance * c - along * s, c / distance * out - s * axis, 0};
+  }
+};
 
 /// What phi is at a point.
 struct Level {
@@ -169,12 +218,27 @@ std::function<PointMap> composed(const std::function<PointMap> &outer,
 
 std::function<Surface> plane_surface(const Point &normal, const Point &pivot,
                                      const std::function<Coefficient> &position,
-                                     const std::function<Coefficient> &tilt) {
-  if (!(std::abs(norm(normal) - 1) <= 1e-12) || normal[2] != 0)
-    throw bad_input("the normal of a rigid plane is (" + short_number(normal[0]) + ", " +
-                    short_number(normal[1]) + ", " + short_number(normal[2]) +
-                    "): give one of length 1 in the plane of x and y");
-  return Plane{normal, pivot, position, tilt};
+                                     const std::function<Coefficient> &tilt, const Point &axis) {
+  check_length(normal, "the normal of a rigid plane");
+  check_length(axis, "the axis that a rigid plane is tilted about");
+  return Plane{normal, pivot, position, tilt, axis};
+}
+
+std::function<Surface> sphere_surface(const Coefficients &centre,
+                                      const std::function<Coefficient> &radius) {
+  return Round{centre, {}, radius};
+}
+
+std::function<Surface> cylinder_surface(const Coefficients &point, const Point &axis,
+                                        const std::function<Coefficient> &radius) {
+  check_length(axis, "the axis of a rigid cylinder");
+  return Round{point, axis, radius};
+}
+
+std::function<Surface> cone_surface(const Coefficients &apex, const Point &axis,
+                                    const std::function<Coefficient> &angle) {
+  check_length(axis, "the axis of a rigid cone");
+  return Cone{apex, axis, angle};
 }
 
 bool is_plane(const std::function<Surface> &surface) {
@@ -193,6 +257,28 @@ std::function<Surface> disk_surface(const std::function<Coefficient> &x,
 
 std::function<Surface> level_set(const std::function<PointMap> &value_and_gradient) {
   return LevelSet(value_and_gradient);
+}
+
+std::function<Surface> level_set(const std::function<PointValue> &phi,
+                                 const std::function<PointMap> &gradient) {
+  return [=](const FullMu &mu, const Point &y) -> SurfacePoint {
+    constexpr int most_steps = 200;
+    Point foot = y;
+    for (int step = 0; step < most_steps; ++step) {
+      const Point slopes = gradient(mu, foot);
+      const double value = phi(mu, foot), slope = norm(slopes);
+      if (!(slope > 0) || !std::isfinite(value / slope))
+        throw failure("the level set of a rigid surface has no gradient at " + place_text(foot));
+      // The foot of y on the plane that touches the level surface of phi there.
+      const Point normal = slopes / slope, way = y - foot;
+      const double distance = dot(way, normal);
+      const Point move = way - (distance + value / slope) * normal;
+      foot = foot + move;
+      if (!(norm(move) > 1e-13 * (norm(foot) + norm(way)))) return {distance, normal, 0};
+    }
+    throw failure("no point of the level set is found next to " + place_text(y) +
+                  ": is it far away, or has a corner there?");
+  };
 }
 
 } // namespace rbvi

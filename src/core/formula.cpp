@@ -254,6 +254,15 @@ std::function<PointMap> value_and_gradient_of(const Formula &value) {
   };
 }
 
+std::function<PointMap> gradient_of(const Formula &value) {
+  check_names(value, first(3));
+  return [own = Evaluator(value, first(3), first(3))](const FullMu &mu, const Point &x) {
+    std::array<double, 4> result;
+    own.with_gradient(mu, x.data(), result.data());
+    return Point{result[1], result[2], result[3]};
+  };
+}
+
 std::function<Traction> traction_of(const Formula &components) {
   check_names(components, coordinates);
   return

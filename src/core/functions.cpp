@@ -1,6 +1,7 @@
 #include "rbvi/core/functions.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 
 #include <algorithm>
 
@@ -24,6 +25,10 @@ template <class Number> struct SameEverywhere {
 };
 
 } // namespace
+
+std::string place_text(const Point &x) {
+  return "(" + short_number(x[0]) + ", " + short_number(x[1]) + ", " + short_number(x[2]) + ")";
+}
 
 std::function<NumberMap> logarithm() {
   return [](double x) { return std::log(x); };

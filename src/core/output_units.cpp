@@ -15,7 +15,8 @@ const OutputForm *form_of(const Scene &scene, const OutputColumn &column) {
 } // namespace
 
 Dimension size_of(const Scene &scene, Size size) {
-  const bool whole = scene.axisymmetric || scene.components == 1; // of a membrane all is
+  // Of a membrane all is whole, too.
+  const bool whole = scene.axisymmetric || scene.components == 1 || scene.dim == 3;
   switch (size) {
   case Size::none:
     return {};

@@ -13,25 +13,18 @@
 namespace rbvi {
 
 const std::vector<std::string> &output_fields() {
-  static const std::vector<std::string> names{"x",
-                                              "y",
-                                              "ux",
-                                              "uy",
-                                              "pressure",
-                                              "gap",
-                                              "tangential",
-                                              "slip",
-                                              "u",
-                                              "nx",
-                                              "ny",
-                                              "sigma_xx",
-                                              "sigma_yy",
-                                              "sigma_zz",
-                                              "sigma_xy",
-                                              "von_mises",
-                                              "strain_energy",
-                                              "contact",
-                                              "stick"};
+  static const std::vector<std::string> names{"x",          "y",
+                                              "z",          "ux",
+                                              "uy",         "uz",
+                                              "pressure",   "gap",
+                                              "tangential", "slip",
+                                              "u",          "nx",
+                                              "ny",         "nz",
+                                              "sigma_xx",   "sigma_yy",
+                                              "sigma_zz",   "sigma_xy",
+                                              "sigma_yz",   "sigma_xz",
+                                              "von_mises",  "strain_energy",
+                                              "contact",    "stick"};
   return names;
 }
 
@@ -63,6 +56,10 @@ const std::vector<OutputRow> &output_rows() {
        "vertical force of contact on the (first) body", Size::force},
       {&Outputs::horizontal_reaction, "horizontal_reaction", quantity, sum,
        "horizontal force of contact on the (first) body, to the right", Size::force},
+      {&Outputs::force_x, "force_x", quantity, sum,
+       "force of contact on the body along x (in space)", Size::force},
+      {&Outputs::force_y, "force_y", quantity, sum, "likewise along y", Size::force},
+      {&Outputs::force_z, "force_z", quantity, sum, "likewise along z", Size::force},
       {&Outputs::contact_measure, "contact_measure", measure, sum,
        "length or area in contact: weights of the nodes with pressure (of the membrane with "
        "-lumped each by its pressure over the largest beside it)",

@@ -160,11 +160,12 @@ bool cancels(const MirrorPlanes &planes, std::size_t component) {
 
 bool has_image(const MirrorPlanes &planes, int image, const OutputFields &begin,
                const OutputFields &end) {
-  const double most =
-      round_off * std::hypot(end[field::x] - begin[field::x], end[field::y] - begin[field::y]);
+  const double along_z = std::isnan(end[field::z]) ? 0 : end[field::z] - begin[field::z];
+  const double most = round_off * std::hypot(end[field::x] - begin[field::x],
+                                             end[field::y] - begin[field::y], along_z);
   for (std::size_t k = 0; k < planes.size(); ++k) {
     const auto &[component, position] = planes[k];
-    const std::size_t place = component == 0 ? field::x : field::y;
+    const std::size_t place = field::x + static_cast<std::size_t>(component);
     if (((image >> k) & 1) != 0 && std::abs(begin[place] - position) < most &&
         std::abs(end[place] - position) < most)
       return false;
@@ -175,13 +176,18 @@ bool has_image(const MirrorPlanes &planes, int image, const OutputFields &begin,
 void reflect(const MirrorPlanes &planes, int image, OutputFields &fields) {
   for (std::size_t k = 0; k < planes.size(); ++k) {
     if (((image >> k) & 1) == 0) continue;
-    const bool along_x = planes[k].component == 0;
-    double &place = fields[along_x ? field::x : field::y];
+    const auto c = static_cast<std::size_t>(planes[k].component);
+    double &place = fields[field::x + c];
     place = 2 * planes[k].position - place;
-    for (const std::size_t turned :
-         {along_x ? field::ux : field::uy, along_x ? field::nx : field::ny, field::sigma_xy,
-          field::tangential, field::slip})
+    constexpr std::array<std::array<std::size_t, 2>, 3> shears{
+        {{field::sigma_xy, field::sigma_xz},
+         {field::sigma_xy, field::sigma_yz},
+         {field::sigma_yz, field::sigma_xz}}};
+    for (const std::size_t turned : {field::ux + c, field::nx + c, shears[c][0], shears[c][1]})
       fields[turned] = -fields[turned];
+    if (std::isnan(fields[field::z])) // in space they are sizes
+      for (const std::size_t turned : {field::tangential, field::slip})
+        fields[turned] = -fields[turned];
   }
 }
 

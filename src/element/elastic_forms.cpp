@@ -104,25 +104,27 @@ struct OfConstants {
 };
 
 std::function<Kernel> strain_kernel(const std::function<PointValue> &modulus,
-                                    const std::function<PointValue> &strain, int degree,
+                                    const std::function<PointValue> &strain, int dim, int degree,
                                     bool axisymmetric) {
   check_degree(degree);
-  return [=, rule = radon_quadrature()](const FullMu &mu, const Cell &cell, double *values) {
-    const Simplex geometry = simplex(2, cell.mapped);
+  return [=, rule = dim == 2 ? radon_quadrature() : simplex_quadrature(3, 5)](
+             const FullMu &mu, const Cell &cell, double *values) {
+    const Simplex geometry = simplex(dim, cell.mapped);
     const double stiffness = geometry.volume * modulus(mu, reference_centre(cell));
-    const int nodes = nodes_per_cell(2, degree);
-    std::fill_n(values, 2 * nodes, 0.0);
+    const int nodes = nodes_per_cell(dim, degree);
+    std::fill_n(values, dim * nodes, 0.0);
     std::array<double, most_nodes> functions{};
     std::array<std::array<double, 3>, most_nodes> gradients{};
     for (const QuadraturePoint &at : rule) {
-      lagrange_values(2, degree, {at.barycentric.data(), 3}, functions);
-      lagrange_gradients(2, degree, {at.barycentric.data(), 3}, geometry, gradients);
-      const Point x = point_at(cell.mapped, at.barycentric, 3);
+      lagrange_values(dim, degree, at.barycentric, functions);
+      lagrange_gradients(dim, degree, at.barycentric, geometry, gradients);
+      const Point x = point_at(cell.mapped, at.barycentric, dim + 1);
       const double stress = stiffness * at.weight * circumference(axisymmetric, x) *
-                            strain(mu, point_at(cell.reference, at.barycentric, 3));
+                            strain(mu, point_at(cell.reference, at.barycentric, dim + 1));
       for (int i = 0; i < nodes; ++i) {
-        values[2 * i] += stress * (gradients[i][0] + (axisymmetric ? functions[i] / x[0] : 0));
-        values[2 * i + 1] += stress * gradients[i][1];
+        if (axisymmetric) gradients[i][0] += functions[i] / x[0];
+        for (int c = 0; c < dim; ++c)
+          values[dim * i + c] += stress * gradients[i][c];
       }
     }
   };
@@ -167,8 +169,8 @@ bool is_plane_stress(const std::function<Material> &material) {
 }
 
 Form strain_load(const std::string &region, const std::function<PointValue> &modulus,
-                 const std::function<PointValue> &strain, int degree, bool axisymmetric) {
-  return {region, strain_kernel(modulus, strain, degree, axisymmetric)};
+                 const std::function<PointValue> &strain, int dim, int degree, bool axisymmetric) {
+  return {region, strain_kernel(modulus, strain, dim, degree, axisymmetric)};
 }
 
 std::function<Material> lambda_alone(const std::function<PointValue> &factor) {

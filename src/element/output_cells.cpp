@@ -70,15 +70,15 @@ OutputFields fields_at(const Scene &scene, const FullMu &mu, const DisplacedCell
                        const Barycentric &at) {
   OutputFields fields;
   fields.fill(std::numeric_limits<double>::quiet_NaN());
-  const Point x = point_at(cell.cell.mapped, at, 3), u = displacement_at(scene, cell, at);
-  fields[field::x] = x[0];
-  fields[field::y] = x[1];
+  const Point x = point_at(cell.cell.mapped, at, scene.dim + 1),
+              u = displacement_at(scene, cell, at);
+  const auto dim = static_cast<std::size_t>(scene.dim);
+  std::copy_n(x.begin(), dim, fields.begin() + field::x);
   if (scene.components == 1) {
     fields[field::u] = u[0];
     return fields;
   }
-  fields[field::ux] = u[0];
-  fields[field::uy] = u[1];
+  std::copy_n(u.begin(), dim, fields.begin() + field::ux);
   if (scene.materials.empty()) return fields;
   const PointStress stress = stress_at(scene, mu, cell, at);
   const auto &s = stress.sigma;
@@ -86,51 +86,76 @@ OutputFields fields_at(const Scene &scene, const FullMu &mu, const DisplacedCell
   fields[field::sigma_yy] = s(1, 1);
   fields[field::sigma_zz] = s(2, 2);
   fields[field::sigma_xy] = s(0, 1);
+  if (dim == 3) {
+    fields[field::sigma_yz] = s(1, 2);
+    fields[field::sigma_xz] = s(0, 2);
+  }
   const Eigen::Matrix3d deviator = s - s.trace() / 3 * Eigen::Matrix3d::Identity();
   fields[field::von_mises] = std::sqrt(1.5) * deviator.norm();
   fields[field::strain_energy] = stress.strain_energy;
   return fields;
 }
 
-/// The part s of the way along an edge.
-Barycentric on_facet(int facet, double s) {
-  const std::vector<int> ends = facet_nodes(2, 1, facet);
+/// Of the cell, from those of the first vertices of one of its facets.
+Barycentric on_facet(int dim, int facet, const Barycentric &of_facet) {
+  const std::vector<int> vertices = facet_nodes(dim, 1, facet);
   Barycentric at{};
-  at[ends[0]] = 1 - s;
-  at[ends[1]] = s;
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    at[vertices[i]] = of_facet[i];
   return at;
 }
 
-void add_facet(const OutputState &state, const OutputPart &part, OutputLines &lines) {
+/// A simplex of one to three dimensions by lines: of a triangle at the shares r of the way from its
+/// first vertex to the opposite edge, of a tetrahedron those of triangles at the shares of the way
+/// to the opposite side. The shares are of Gauss, where they are summed, else from end to end.
+class SimplexLines {
+public:
+  SimplexLines(int dim, double size, const OutputLines &lines)
+      : dim_(dim), size_(size), places_(lines.places()) {}
+
+  std::size_t count() const { return dim_ == 1 ? 1 : dim_ == 2 ? 3 : 9; }
+  Barycentric at(std::size_t line, double s) const {
+    if (dim_ == 1) return {1 - s, s, 0, 0};
+    const double r = places_[line % 3].s;
+    if (dim_ == 2) return {1 - r, r * (1 - s), r * s, 0};
+    const double q = places_[line / 3].s;
+    return {1 - q, q * (1 - r), q * r * (1 - s), q * r * s};
+  }
+  /// Over the length of the line.
+  double measure(std::size_t line) const {
+    if (dim_ == 1) return size_;
+    const auto &[r, weight] = places_[line % 3];
+    if (dim_ == 2) return 2 * size_ * r * weight;
+    const auto &[q, of_layer] = places_[line / 3];
+    return 6 * size_ * q * q * of_layer * r * weight;
+  }
+
+private:
+  int dim_;
+  double size_;
+  const std::array<OutputLines::Place, 3> &places_;
+};
+
+/// The cell, or a facet of it, where its normal is known.
+void add_simplex(const OutputState &state, const OutputPart &part, OutputLines &lines) {
   const DisplacedCell cell = state.displaced(part.cell);
-  const auto [length, normal] = facet_measure(2, facet_cell(cell.cell, part.facet).mapped);
+  const int dim = state.scene.dim;
+  const bool whole = part.facet < 0;
+  FacetMeasure facet{};
+  if (!whole) facet = facet_measure(dim, facet_cell(cell.cell, part.facet).mapped);
+  const SimplexLines own(whole ? dim : dim - 1,
+                         whole ? volume_of(dim, cell.cell.mapped) : facet.size, lines);
   lines.add(
-      1,
-      [&, &normal = normal](std::size_t, double s) {
-        OutputFields fields = fields_at(state.scene, state.mu, cell, on_facet(part.facet, s));
-        fields[field::nx] = normal[0];
-        fields[field::ny] = normal[1];
+      own.count(),
+      [&](std::size_t line, double s) {
+        const Barycentric at = own.at(line, s);
+        OutputFields fields =
+            fields_at(state.scene, state.mu, cell, whole ? at : on_facet(dim, part.facet, at));
+        if (!whole) std::copy_n(facet.normal.begin(), dim, fields.begin() + field::nx);
         return fields;
       },
-      [&, size = length](std::size_t, const OutputFields &fields) {
-        return size * circumference(state.scene.axisymmetric, {fields[field::x], 0, 0});
-      });
-}
-
-/// A triangle by lines at the shares r of the way from its first vertex to the opposite edge: of
-/// Gauss, where they are summed, else from end to end.
-void add_triangle(const OutputState &state, const OutputPart &part, OutputLines &lines) {
-  const auto &places = lines.places();
-  const DisplacedCell cell = state.displaced(part.cell);
-  const double area = volume_of(2, cell.cell.mapped);
-  lines.add(
-      places.size(),
-      [&](std::size_t line, double s) {
-        const double r = places[line].s;
-        return fields_at(state.scene, state.mu, cell, {1 - r, r * (1 - s), r * s, 0});
-      },
       [&](std::size_t line, const OutputFields &fields) {
-        return 2 * area * places[line].s * places[line].weight *
+        return own.measure(line) *
                circumference(state.scene.axisymmetric, {fields[field::x], 0, 0});
       });
 }
@@ -138,7 +163,7 @@ void add_triangle(const OutputState &state, const OutputPart &part, OutputLines 
 void add_point(const OutputState &state, const OutputPart &part, const Point &point,
                OutputLines &lines) {
   const DisplacedCell cell = state.displaced(part.cell);
-  const Barycentric at = barycentric_of(2, cell.cell.reference, point);
+  const Barycentric at = barycentric_of(state.scene.dim, cell.cell.reference, point);
   lines.add(
       1, [&](std::size_t, double) { return fields_at(state.scene, state.mu, cell, at); },
       [](std::size_t, const OutputFields &) { return 1.0; });
@@ -165,7 +190,7 @@ LocalForm local_form(const Scene &scene, const FullMu &mu, const OutputCells &ce
     for (int i = 0; i < per_cell(scene); ++i)
       local.nodes.push_back(i);
   else
-    local.nodes = facet_nodes(2, scene.degree, part.facet);
+    local.nodes = facet_nodes(scene.dim, scene.degree, part.facet);
   Cell of_kernel = part.facet < 0 ? cell : facet_cell(cell, part.facet);
   if (term.theta) of_kernel.mapped = of_kernel.reference;
   const std::size_t rows = local.nodes.size() * static_cast<std::size_t>(scene.components);
@@ -228,15 +253,20 @@ std::span<const OutputPart> parts_of(const OutputCells &cells, int output) {
 std::array<double, 2> facet_mean(const OutputState &state, const OutputPart &part,
                                  const Mean &mean) {
   const DisplacedCell cell = state.displaced(part.cell);
-  const double length = facet_measure(2, facet_cell(cell.cell, part.facet).reference).size;
+  const int dim = state.scene.dim;
+  const double whole = facet_measure(dim, facet_cell(cell.cell, part.facet).reference).size;
   std::array<double, 2> sums{};
-  for (const auto &[s, weight] : edge_quadrature) {
-    const Barycentric at = on_facet(part.facet, s);
-    const Point x = point_at(cell.cell.reference, at, 3);
-    const double size = weight * length * circumference(mean.axisymmetric, x);
+  const auto add = [&](const Barycentric &of_facet, double weight) {
+    const Barycentric at = on_facet(dim, part.facet, of_facet);
+    const Point x = point_at(cell.cell.reference, at, dim + 1);
+    const double size = weight * whole * circumference(mean.axisymmetric, x);
     sums[0] += size * dot(mean.direction, displacement_at(state.scene, cell, at));
     sums[1] += size;
-  }
+  };
+  for (const auto &[s, weight] : edge_quadrature)
+    if (dim == 2) add({1 - s, s, 0, 0}, weight);
+  for (const auto &[at, weight] : radon_quadrature())
+    if (dim == 3) add(at, weight);
   return sums;
 }
 
@@ -325,10 +355,8 @@ double cell_output(const Scene &scene, int output, const FullMu &mu, const Outpu
   for (const OutputPart &part : parts) {
     if (form.place == OutputForm::Place::point)
       add_point(state, part, form.vector, lines);
-    else if (part.facet >= 0)
-      add_facet(state, part, lines);
     else
-      add_triangle(state, part, lines);
+      add_simplex(state, part, lines);
   }
   return output_value(form, lines.sums());
 }

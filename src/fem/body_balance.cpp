@@ -48,7 +48,7 @@ public:
     known = add_contacts() && add_means();
     for (const Term &term : scene_.a)
       known = known && (term.form.boundary.empty() || share(term.form.boundary) == 0);
-    for (std::size_t c = 0; c < 2; ++c)
+    for (std::size_t c = 0; c < 3; ++c)
       known = known && (direction[c] == 0 ||
                         !(cancels(scene_.mirrors, c) || (scene_.axisymmetric && c == 0)));
   }
@@ -77,8 +77,9 @@ public:
 
 private:
   bool is_held(std::size_t node) const {
-    for (std::size_t c = 0; c < 2; ++c)
-      if (forces.direction[c] != 0 && dofs_.free[2 * node + c] < 0) return true;
+    const auto components = static_cast<std::size_t>(dofs_.components);
+    for (std::size_t c = 0; c < components; ++c)
+      if (forces.direction[c] != 0 && dofs_.free[components * node + c] < 0) return true;
     return false;
   }
 
@@ -173,8 +174,9 @@ private:
 /// Once each, with all bodies that a sum has to have.
 std::vector<Group> groups_of(const Problem &problem, const std::map<std::string, Flags> &bodies) {
   std::vector<Point> directions{{1, 0, 0}, {0, 1, 0}};
+  if (problem.scene().dim == 3) directions.push_back({0, 0, 1});
   for (const OutputForm &form : problem.scene().outputs)
-    if (form.kind == OutputForm::Kind::reaction && form.vector[0] * form.vector[1] != 0)
+    if (form.kind == OutputForm::Kind::reaction && std::ranges::count(form.vector, 0.0) < 2)
       directions.push_back(form.vector);
   std::vector<Group> groups;
   for (std::size_t body = 0; body < static_cast<std::size_t>(problem.mesh().bodies); ++body)
@@ -198,7 +200,8 @@ void add_load(const Problem &problem, const FullMu &mu, const Term &load,
               std::vector<Group> &groups) {
   const Mesh &mesh = problem.mesh();
   const double theta = load.theta ? coefficient_of(load, mu) : 1;
-  std::array<double, 2 * most_nodes> values{};
+  const auto dim = static_cast<std::size_t>(mesh.dim);
+  std::array<double, 3 * most_nodes> values{};
   for (const auto &[number, facet] : places_of(mesh, load.form)) {
     if (std::ranges::none_of(groups, [&](const Group &group) { return group.has(number); }))
       continue;
@@ -206,10 +209,10 @@ void add_load(const Problem &problem, const FullMu &mu, const Term &load,
     if (!load.theta) map_cell(problem.scene(), mu, cell);
     if (facet >= 0) cell = facet_cell(cell, facet);
     load.form.kernel(load.theta ? FullMu{} : mu, cell, values.data());
-    const int nodes = nodes_per_cell(facet < 0 ? 2 : 1, mesh.degree);
+    const int nodes = nodes_per_cell(facet < 0 ? mesh.dim : mesh.dim - 1, mesh.degree);
     for (Group &group : groups)
-      for (std::size_t i = 0; i < 2 * static_cast<std::size_t>(nodes) && group.has(number); ++i) {
-        const double force = theta * values[i] * group.forces.direction[i % 2];
+      for (std::size_t i = 0; i < dim * static_cast<std::size_t>(nodes) && group.has(number); ++i) {
+        const double force = theta * values[i] * group.forces.direction[i % dim];
         group.forces.load += force;
         group.forces.sizes += std::abs(force);
       }
@@ -220,7 +223,7 @@ void add_load(const Problem &problem, const FullMu &mu, const Term &load,
 
 std::vector<BodyForces> forces_on_bodies(const Problem &problem, const FullMu &mu) {
   const Scene &scene = problem.scene();
-  if (scene.dim != 2 || scene.components != 2 || scene.materials.empty()) return {};
+  if (scene.components == 1 || scene.materials.empty()) return {};
   std::vector<Group> groups = groups_of(problem, bodies_of_boundaries(problem.mesh()));
   collectively(problem.comm(), [&] {
     for (const Term &load : scene.f)
@@ -255,8 +258,10 @@ std::array<double, 2> left_of(const BodyForces &forces, const Outputs &outputs) 
   for (const auto &[number, sign] : forces.contacts) {
     const Outputs &one =
         outputs.interfaces.empty() ? outputs : outputs.interfaces[static_cast<std::size_t>(number)];
-    left += sign * (forces.direction[0] * one.horizontal_reaction.value_or(0) +
-                    forces.direction[1] * one.reaction.value_or(0));
+    const std::array along{one.force_x ? one.force_x : one.horizontal_reaction,
+                           one.force_y ? one.force_y : one.reaction, one.force_z};
+    for (std::size_t c = 0; c < along.size(); ++c)
+      left += sign * forces.direction[c] * along[c].value_or(0);
     sizes += one.normal_force.value_or(0) + one.tangential_force.value_or(0);
   }
   return {left, sizes};
@@ -268,8 +273,8 @@ void check_balance(const Problem &problem, const FullMu &mu, const Outputs &outp
     if (const auto [left, sizes] = left_of(forces, outputs);
         !(std::abs(left) <= tolerance * sizes + round_off))
       throw failure("the forces on the body of the boundary '" + forces.boundary +
-                    "' do not balance along (" + short_number(forces.direction[0]) + ", " +
-                    short_number(forces.direction[1]) + "): what outputs say of contact, " +
+                    "' do not balance along " + place_text(forces.direction) +
+                    ": what outputs say of contact, " +
                     "reactions and springs leaves, with the loads, " + short_number(left) + " of " +
                     short_number(sizes));
 }

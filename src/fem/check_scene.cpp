@@ -221,7 +221,9 @@ struct Nearest {
 void check_normal(const ContactInterface &interface, const FullMu &mu, const Cell &facet,
                   const std::string &what, Nearest &nearest) {
   const FacetMeasure measure = facet_measure(facet.dim, facet.mapped);
-  const Point x = (facet.reference[0] + facet.reference[1]) / 2;
+  Point x{};
+  for (int i = 0; i < facet.dim; ++i)
+    x = x + facet.reference[i] / facet.dim;
   PointConstraint at, nearer;
   const double step = 1e-3 * measure.size;
   try {
@@ -307,8 +309,8 @@ void check_mirror(const Problem &problem, const MirrorPlane &plane) {
   }
   over_ranks(problem.comm(), MPI_MAX, beyond);
   const double round_off = 1e-7 * (beyond[0] + beyond[1]);
-  const std::string axis = plane.component == 0 ? "x" : "y",
-                    where = axis + " = " + short_number(plane.position);
+  const std::string axis(1, "xyz"[plane.component]),
+      where = axis + " = " + short_number(plane.position);
   if (std::min(std::abs(beyond[0]), std::abs(beyond[1])) > round_off)
     throw bad_input("the mesh does not end at the plane of symmetry " + where +
                     ", but reaches from " + short_number(plane.position - beyond[0]) + " to " +

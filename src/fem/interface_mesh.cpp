@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace rbvi {
 
@@ -63,10 +64,10 @@ void visit_edges(const std::vector<OrderedPiece> &pieces, const Visit &visit) {
   }
 }
 
-/// Cells in their order.
-Found found_cells(const Mesh &mesh, const Dofs &dofs, SeenCells &&seen) {
+/// Cells, or facets, in their order.
+Found found_cells(const Dofs &dofs, SeenCells &&seen, int per_entity) {
   Found found;
-  found.mesh.per_entity = nodes_per_cell(mesh.dim, mesh.degree);
+  found.mesh.per_entity = per_entity;
   for (const PetscInt fixed : seen.nodes.fixed)
     for (int c = 0; c < dofs.components; ++c)
       found.free.push_back((fixed >> c & 1) == 0);
@@ -90,10 +91,33 @@ Found find_region(const Mesh &mesh, const Dofs &dofs, const std::string &name) {
   std::vector<SeenCell> mine;
   for (std::size_t k = 0; k < mesh.cells.size(); ++k)
     if (in_region[k]) mine.push_back(seen_cell(mesh, k, -1));
-  SeenCells seen = gather_cells(mesh, dofs, mine);
+  SeenCells seen = gather_cells(mesh, dofs, mine, nodes_per_cell(mesh.dim, mesh.degree));
   if (seen.cells.empty()) throw bad_input("the mesh has no cell in region '" + name + "'");
   std::ranges::sort(seen.cells, {}, &SeenCell::number);
-  return found_cells(mesh, dofs, std::move(seen));
+  return found_cells(dofs, std::move(seen), nodes_per_cell(mesh.dim, mesh.degree));
+}
+
+/// The triangles of a boundary.
+Found find_surface(const Mesh &mesh, const Dofs &dofs, const std::string &name) {
+  const int per_facet = nodes_per_cell(2, mesh.degree);
+  std::vector<SeenCell> mine;
+  for (const auto &[cell, facet] : mesh.facets.at(name)) {
+    const std::array<int, most_nodes> of_cell = nodes_of(mesh, cell);
+    SeenCell &seen = mine.emplace_back(SeenCell{mesh.natural_cell[cell], facet, {}});
+    std::ranges::transform(facet_nodes(3, mesh.degree, facet), seen.nodes.begin(),
+                           [&](int i) { return of_cell[i]; });
+  }
+  SeenCells seen = gather_cells(mesh, dofs, mine, per_facet);
+  if (seen.cells.empty()) throw bad_input("the contact boundary '" + name + "' has no triangle");
+  std::ranges::sort(seen.cells, {},
+                    [](const SeenCell &of) { return std::pair(of.number, of.edge); });
+  for (SeenCell &of : seen.cells)
+    of.edge = -1;
+  Found found = found_cells(dofs, std::move(seen), per_facet);
+  const std::vector<PetscInt> &open = mesh.open_rims.at(name);
+  for (const PetscInt node : found.natural)
+    found.mesh.closed_ends.push_back(std::ranges::binary_search(open, node) ? 0 : 1);
+  return found;
 }
 
 void add_closed_ends(const std::vector<OrderedPiece> &pieces, InterfaceMesh &interface) {
@@ -114,7 +138,7 @@ Found find_cells_beside(const Mesh &mesh, const Dofs &dofs, const InterfaceEntit
       ++edge;
     mine.push_back(seen_cell(mesh, cell, edge));
   }
-  SeenCells seen = gather_cells(mesh, dofs, mine);
+  SeenCells seen = gather_cells(mesh, dofs, mine, nodes_per_cell(mesh.dim, mesh.degree));
   if (entities.snapped) move_middles(mesh, scene, boundary, seen.nodes);
   const std::vector<OrderedPiece> pieces = ordered_pieces(mesh, seen.nodes, boundary, true, false);
   std::map<PetscInt, int> number; // of the edge by where it begins
@@ -122,7 +146,7 @@ Found find_cells_beside(const Mesh &mesh, const Dofs &dofs, const InterfaceEntit
   std::ranges::sort(seen.cells, {}, [&](const SeenCell &cell) {
     return number.at(seen.nodes.natural[cell.nodes[simplex_edges[cell.edge][0]]]);
   });
-  Found found = found_cells(mesh, dofs, std::move(seen));
+  Found found = found_cells(dofs, std::move(seen), nodes_per_cell(mesh.dim, mesh.degree));
   add_closed_ends(pieces, found.mesh);
   return found;
 }
@@ -181,12 +205,13 @@ Found find_curves(const Mesh &mesh, const Dofs &dofs, const InterfaceEntities &e
 Found find_interface(const Mesh &mesh, const Dofs &dofs, const Scene &scene,
                      const InterfaceEntities &entities) {
   using enum InterfaceEntities::Kind;
-  if (entities.kind != cells && mesh.dim != 2)
-    throw bad_input("contact along a boundary is for two dimensions: the mesh has " +
-                    std::to_string(mesh.dim));
-  Found found = entities.kind == cells    ? find_region(mesh, dofs, entities.parts.front())
-                : entities.kind == curves ? find_curves(mesh, dofs, entities, scene)
-                                          : find_cells_beside(mesh, dofs, entities, scene);
+  if (mesh.dim == 3 && (entities.kind == cells_beside || entities.parts.size() > 1))
+    throw bad_input("Nitsche's method, and contact between two bodies, are for two dimensions: a "
+                    "solid meets something rigid, by multipliers");
+  Found found = entities.kind == cells          ? find_region(mesh, dofs, entities.parts.front())
+                : entities.kind == cells_beside ? find_cells_beside(mesh, dofs, entities, scene)
+                : mesh.dim == 3                 ? find_surface(mesh, dofs, entities.parts.front())
+                                                : find_curves(mesh, dofs, entities, scene);
   found.mesh.dim = mesh.dim;
   found.mesh.degree = mesh.degree;
   found.mesh.components = dofs.components;
@@ -221,27 +246,27 @@ std::string both(const ContactRecipe &one, const ContactRecipe &other) {
   return described(one) + " and " + described(other) + " ";
 }
 
-std::string place(const Point &x) {
-  return "(" + short_number(x[0]) + ", " + short_number(x[1]) + ", " + short_number(x[2]) + ")";
-}
+/// Whose each facet of a boundary is, by the natural numbers of its vertices.
+using Facets = std::map<std::set<PetscInt>, const ContactRecipe *>;
 
-/// Whose each edge of a boundary is, by the natural numbers of its ends.
-using Edges = std::map<std::pair<PetscInt, PetscInt>, const ContactRecipe *>;
-
-/// The edges of its curves, or that its cells stand beside, are its own. Throws bad_input where one
-/// is another interface's.
-void claim_edges(const Found &found, const ContactRecipe &contact, Edges &edges) {
+/// The facets of its boundaries, or that its cells stand beside, are its own. Throws bad_input
+/// where one is another interface's.
+void claim_facets(const Found &found, const ContactRecipe &contact, Facets &facets) {
   if (contact.entities.kind == InterfaceEntities::Kind::cells) return;
   for (Index e = 0; e < found.mesh.count(); ++e) {
     const int *nodes = found.mesh.nodes_of(e);
-    const auto [i, j] =
-        found.mesh.edges.empty() ? std::array{0, 1} : simplex_edges[found.mesh.edges[e]];
-    const auto a = static_cast<std::size_t>(nodes[i]), b = static_cast<std::size_t>(nodes[j]);
-    const auto [known, is_new] =
-        edges.emplace(std::minmax({found.natural[a], found.natural[b]}), &contact);
+    std::vector<int> corners(nodes, nodes + found.mesh.dim);
+    if (!found.mesh.edges.empty())
+      std::ranges::transform(simplex_edges[found.mesh.edges[e]], corners.begin(),
+                             [&](int i) { return nodes[i]; });
+    std::set<PetscInt> facet;
+    for (const int node : corners)
+      facet.insert(found.natural[node]);
+    const auto [known, is_new] = facets.emplace(facet, &contact);
     if (!is_new)
-      throw bad_input(both(*known->second, contact) + "share the edge from " +
-                      place(found.mesh.points[a]) + " to " + place(found.mesh.points[b]) +
+      throw bad_input(both(*known->second, contact) + "share the facet from " +
+                      place_text(found.mesh.points[corners[0]]) + " to " +
+                      place_text(found.mesh.points[corners[1]]) +
                       ": give each a boundary of its own");
   }
 }
@@ -255,10 +280,10 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
   std::vector<PetscInt> &natural_dofs = places.natural_dofs;
   const auto components = static_cast<std::size_t>(dofs.components);
   const std::vector<int> materials = materials_of_cells(scene, mesh);
-  Edges edges;
+  Facets facets;
   for (const ContactRecipe &contact : scene.contacts) {
     Found found = find_interface(mesh, dofs, scene, contact.entities);
-    claim_edges(found, contact, edges);
+    claim_facets(found, contact, facets);
     first.push_back(natural_dofs.size());
     for (std::size_t i = 0; i < found.free.size(); ++i) {
       const PetscInt natural =
@@ -270,7 +295,7 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
       if (dofs.tied.contains(natural) ||
           std::ranges::any_of(dofs.tied, [&](const auto &pair) { return pair.second == natural; }))
         throw bad_input("a boundary that moves as one by a force meets " + described(contact) +
-                        " at " + place(found.mesh.points[i / components]) +
+                        " at " + place_text(found.mesh.points[i / components]) +
                         ": give them boundaries without common nodes");
       const auto [at, is_new] = column.emplace(natural, static_cast<int>(natural_dofs.size()));
       if (const auto dof = static_cast<std::size_t>(at->second);
@@ -278,7 +303,7 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
         const auto other = std::ranges::upper_bound(first, dof) - first.begin() - 1;
         throw bad_input(both(scene.contacts[other], contact) +
                         "both constrain the displacement along " + "xyz"[i % components] + " at " +
-                        place(found.mesh.points[i / components]) +
+                        place_text(found.mesh.points[i / components]) +
                         ": give them boundaries without common nodes, or fix the displacement "
                         "there");
       }

@@ -80,9 +80,7 @@ private:
         around.push_back(mesh_.natural_node[static_cast<std::size_t>(nodes_of(mesh_, cell)[i])]);
     }
     around = gather_all(mesh_.comm, around, MPIU_INT);
-    const std::string where = "the output '" + form.name + "' is at (" +
-                              short_number(form.vector[0]) + ", " + short_number(form.vector[1]) +
-                              ")";
+    const std::string where = "the output '" + form.name + "' is at " + place_text(form.vector);
     if (around.empty())
       throw bad_input(where + ", which no cell of the mesh" +
                       (form.at.empty() ? "" : " in '" + joined(form.at, "', '") + "'") + " has");
@@ -334,7 +332,6 @@ std::map<PetscInt, int> put_cells(const CellTable &table, const Mesh &mesh, cons
 OutputCells cells_of_outputs(const Scene &scene, const Mesh &mesh, const Dofs &dofs) {
   OutputCells result;
   if (std::ranges::none_of(scene.outputs, has_cells)) return result;
-  if (mesh.dim != 2) throw bad_input("outputs over boundaries and regions are of plane meshes");
   const std::vector<int> materials = materials_of_cells(scene, mesh);
   OwnParts own(scene, mesh, dofs);
   CellTable table;

@@ -38,8 +38,9 @@ SeenNodes gather_nodes(const Mesh &mesh, const Dofs &dofs, std::vector<int> mine
   return all;
 }
 
-SeenCells gather_cells(const Mesh &mesh, const Dofs &dofs, const std::vector<SeenCell> &mine) {
-  const auto per_cell = static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree));
+SeenCells gather_cells(const Mesh &mesh, const Dofs &dofs, const std::vector<SeenCell> &mine,
+                       int nodes_of_each) {
+  const auto per_cell = static_cast<std::size_t>(nodes_of_each);
   std::vector<int> nodes;
   std::vector<PetscInt> packed;
   for (const SeenCell &cell : mine) {

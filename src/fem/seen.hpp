@@ -8,8 +8,8 @@
 
 namespace rbvi {
 
-/// A cell that an interface sees: its number in the undistributed mesh, its edge on a boundary (-1:
-/// none), its nodes.
+/// A cell, or a facet of it, that an interface sees: the number of the cell in the undistributed
+/// mesh, its edge on a boundary or which facet it is (-1: none), the nodes.
 struct SeenCell {
   PetscInt number, edge;
   std::array<int, most_nodes> nodes;
@@ -34,8 +34,9 @@ struct SeenCells {
 /// each of them. Collective.
 SeenNodes gather_nodes(const Mesh &mesh, const Dofs &dofs, std::vector<int> mine);
 
-/// `mine`: with this rank's local nodes. Collective.
-SeenCells gather_cells(const Mesh &mesh, const Dofs &dofs, const std::vector<SeenCell> &mine);
+/// `mine`: with so many of this rank's local nodes each. Collective.
+SeenCells gather_cells(const Mesh &mesh, const Dofs &dofs, const std::vector<SeenCell> &mine,
+                       int per_cell);
 
 /// What contact sees of a boundary: its nodes, and the middle of the edge that begins at a vertex.
 struct SeenCurve {

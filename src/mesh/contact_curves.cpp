@@ -1,5 +1,6 @@
 #include "rbvi/mesh/contact_curves.hpp"
 
+#include "facets.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/mesh/serial.hpp"
@@ -71,10 +72,10 @@ double off_its_arc(const SerialMesh &mesh, const CurvePiece &piece,
 
 } // namespace
 
-std::vector<std::string> contact_curves(const Scene &scene) {
+std::vector<std::string> contact_boundaries(const Scene &scene) {
   std::vector<std::string> names;
   for (const ContactRecipe &contact : scene.contacts)
-    if (contact.entities.kind != InterfaceEntities::Kind::cells && scene.dim == 2)
+    if (contact.entities.kind != InterfaceEntities::Kind::cells)
       names.insert(names.end(), contact.entities.parts.begin(), contact.entities.parts.end());
   return names;
 }
@@ -109,6 +110,29 @@ std::vector<CurvePiece> curve_pieces(const SerialMesh &mesh, const std::string &
   return pieces;
 }
 
+std::vector<PetscInt> open_rim(const SerialMesh &mesh, const std::string &boundary) {
+  const std::vector<Facet> own = facets_of(mesh, boundary);
+  const auto is_own = [&](const Facet &facet) { return std::ranges::binary_search(own, facet); };
+  // Planes of facets have no side here: two that meet in a sharp edge are at more than sharp_turn,
+  // whichever way each is seen, unless the body is a sheet.
+  const auto normal = [&](const Facet &facet) {
+    const Point &a = mesh.points[facet[0]];
+    const Point across = cross(mesh.points[facet[1]] - a, mesh.points[facet[2]] - a);
+    return across / norm(across);
+  };
+  std::map<std::pair<int, int>, std::vector<Facet>> around;
+  for (const Facet &facet : outer_facets(mesh))
+    for (std::size_t i = 0; i < 3; ++i)
+      around[std::minmax(facet[i], facet[(i + 1) % 3])].push_back(facet);
+  std::set<PetscInt> vertices;
+  for (const auto &[edge, facets] : around) {
+    if (facets.size() != 2 || is_own(facets[0]) == is_own(facets[1])) continue;
+    if (std::abs(dot(normal(facets[0]), normal(facets[1]))) > std::cos(sharp_turn))
+      vertices.insert({edge.first, edge.second});
+  }
+  return {vertices.begin(), vertices.end()};
+}
+
 std::vector<std::pair<std::string, double>> off_arcs(const SerialMesh &mesh, const Scene &scene) {
   std::set<std::pair<PetscInt, PetscInt>> curved;
   for (const auto &[name, curve] : scene.curves)
@@ -116,7 +140,8 @@ std::vector<std::pair<std::string, double>> off_arcs(const SerialMesh &mesh, con
       for (const auto &facet : own->second)
         curved.insert(std::minmax<PetscInt>(facet[0], facet[1]));
   std::vector<std::pair<std::string, double>> off;
-  for (const std::string &boundary : contact_curves(scene)) {
+  if (mesh.dim != 2) return off;
+  for (const std::string &boundary : contact_boundaries(scene)) {
     double away = 0;
     for (const CurvePiece &piece : curve_pieces(mesh, boundary, scene.name))
       away = std::max(away, off_its_arc(mesh, piece, curved));

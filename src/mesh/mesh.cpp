@@ -237,7 +237,8 @@ void fill_cell_middles(Mesh &mesh, PetscInt first_vertex) {
 struct Undistributed {
   SerialMesh mesh;
   std::map<std::string, std::vector<SerialFacet>> facets; ///< of every boundary
-  std::map<std::string, std::vector<CurvePiece>> curves;  ///< of those with contact
+  std::map<std::string, std::vector<CurvePiece>> curves;  ///< of those with contact, in 2D
+  std::map<std::string, std::vector<PetscInt>> open_rims; ///< likewise, in 3D
   std::size_t points = 0;                                 ///< of its DM
   /// Per region and per boundary, which may have the name of a region, of them.
   std::map<std::string, std::vector<char>> in_region, on_boundary;
@@ -328,8 +329,11 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
     fingerprint = fingerprint_of(all.mesh);
     for (const std::string &name : scene.mesh.boundaries)
       if (all.mesh.boundary.contains(name)) all.facets[name] = facets_with_cells(all.mesh, name);
-    for (const std::string &name : contact_curves(scene))
-      all.curves[name] = curve_pieces(all.mesh, name, "the mesh");
+    for (const std::string &name : contact_boundaries(scene))
+      if (scene.dim == 2)
+        all.curves[name] = curve_pieces(all.mesh, name, "the mesh");
+      else
+        all.open_rims[name] = open_rim(all.mesh, name);
   });
 
   Mesh mesh;
@@ -352,9 +356,10 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
   const Migration migration(mesh.dm, part, world.size);
   fill_nodes_and_cells(mesh, migration, edges, all.points);
   fill_bodies(mesh, migration, all.bodies);
-  for (const std::string &name : contact_curves(scene)) {
+  for (const std::string &name : contact_boundaries(scene)) {
     share(comm, all.curves[name]);
     mesh.curves[name] = all.curves[name];
+    mesh.open_rims[name] = gather_all(comm, all.open_rims[name], MPIU_INT);
   }
   for (const std::string &name : scene.mesh.regions)
     mesh.region[name] = own_region(mesh, migration.arrived(all.in_region[name], MPI_CHAR));

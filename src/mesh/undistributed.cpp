@@ -101,8 +101,8 @@ SerialMesh undistributed_mesh(const Scene &scene, const MeshOptions &options,
     check_mesh(mesh, source);
     check_facts(mesh, scene, source);
     check_curves(mesh, scene, source);
-    for (const std::string &name : contact_curves(scene))
-      (void)curve_pieces(mesh, name, source);
+    for (const std::string &name : contact_boundaries(scene))
+      if (scene.dim == 2) (void)curve_pieces(mesh, name, source);
     mesh = refined_mesh(std::move(mesh), options.refine, scene, source, levels);
   }
   balance_inclusion(mesh, scene);

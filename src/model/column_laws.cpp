@@ -22,9 +22,12 @@ ColumnLaws laws_of_columns(const Contact &contact, const Matrix &dual_basis) {
   NodeLaws &laws = columns.laws;
   laws.rows = dual_basis.cols();
   for (std::size_t i = 0; i < interfaces; ++i)
+    if (!tangent[i].empty()) laws.tangents = contact.interfaces[i]->dual().components - 1;
+  const auto each = static_cast<std::size_t>(laws.tangents);
+  for (std::size_t i = 0; i < interfaces; ++i)
     for (std::size_t k = 0; k < normal[i].size(); ++k) {
       laws.normal.push_back(normal[i][k]);
-      laws.tangent.push_back(tangent[i].empty() ? -1 : tangent[i].at(k));
+      laws.tangent.push_back(tangent[i].empty() ? -1 : tangent[i].at(each * k));
       columns.interface_of.push_back(static_cast<int>(i));
       columns.without_bound.push_back(without_bound[normal[i][k]]);
     }

@@ -1,5 +1,6 @@
 #include "rbvi/mor/condensed.hpp"
 
+#include "cone_tools.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/parameter_sets.hpp"
@@ -69,11 +70,33 @@ template <class Integer> Matrix unit_loads(Index dofs, const std::vector<Integer
   return loads;
 }
 
+constexpr Index layers = 2; ///< of neighbours
+
+/// Some rows of b with their neighbours: along a curve by their numbers, on a surface by their
+/// nodes.
+std::vector<bool> with_neighbours(Problem &problem, const std::vector<bool> &rows) {
+  const Index count = std::ssize(rows);
+  std::vector<bool> result = rows;
+  if (problem.scene().dim == 2) {
+    for (Index i = 0; i < count; ++i)
+      for (Index k = std::max<Index>(0, i - layers); k < std::min(count, i + layers + 1); ++k)
+        if (rows[k]) result[i] = true;
+    return result;
+  }
+  for (Index layer = 0; layer < layers; ++layer)
+    add_neighbours(result, problem.w_product());
+  const Contact &contact = problem.contact();
+  for (Index i = 0; i < count; ++i)
+    if (const DualRow of = dual_row(contact, i);
+        !of.normal && result[contact.first_row[of.interface] + of.node])
+      result[i] = true;
+  return result;
+}
+
 /// Contact dofs that b couples, at some mu of the set, with rows of it that are wanted there or
-/// have one that is among their two neighbours on either side. Increasing.
+/// have one that is among their neighbours. Increasing.
 template <class Wanted>
 std::vector<Index> coupled_dofs(Problem &problem, const std::vector<Mu> &set, Wanted &&wanted) {
-  constexpr Index neighbours = 2;
   std::set<Index> dofs;
   Operators op;
   for (std::size_t p = 0; p < set.size(); ++p) {
@@ -82,14 +105,13 @@ std::vector<Index> coupled_dofs(Problem &problem, const std::vector<Mu> &set, Wa
     } catch (const Error &) {
       continue; // where the interfaces cannot be, no query has an answer
     }
-    for (Index i = 0; i < op.b.rows(); ++i) {
-      bool near = false;
-      for (Index k = std::max<Index>(0, i - neighbours);
-           k < std::min(op.b.rows(), i + neighbours + 1) && !near; ++k)
-        near = wanted(p, k);
-      for (SparseMatrix::InnerIterator entry(op.b, i); entry && near; ++entry)
+    std::vector<bool> near(op.b.rows());
+    for (Index i = 0; i < op.b.rows(); ++i)
+      near[i] = wanted(p, i);
+    near = with_neighbours(problem, near);
+    for (Index i = 0; i < op.b.rows(); ++i)
+      for (SparseMatrix::InnerIterator entry(op.b, i); entry && near[i]; ++entry)
         if (entry.value() != 0) dofs.insert(entry.col());
-    }
   }
   return {dofs.begin(), dofs.end()};
 }

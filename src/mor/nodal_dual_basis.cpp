@@ -55,15 +55,15 @@ bool symmetric(const Contact &contact, const Matrix &snapshots) {
 SparseMatrix columns_of_nodes(const Contact &contact, bool halves) {
   std::vector<Eigen::Triplet<double>> entries;
   Index column = 0;
-  for (int component = 0; component < 3; ++component) // normal multipliers first
+  for (const bool normal : {true, false}) // normal multipliers first
     for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
       const DualSpace &dual = contact.interfaces[i]->dual();
-      if (component >= dual.components) continue;
-      const Index nodes = dual.nodes(), first = contact.first_row[i] + component * nodes;
-      const Index count = halves ? (nodes + 1) / 2 : nodes;
+      const Index nodes = dual.nodes(), first = contact.first_row[i] + (normal ? 0 : nodes);
+      const Index rows = normal ? nodes : (dual.components - 1) * nodes;
+      const Index count = halves ? (rows + 1) / 2 : rows; // mirrored nodes have one tangent
       for (Index k = 0; k < count; ++k, ++column) {
-        if (halves && nodes - 1 - k != k)
-          entries.emplace_back(first + nodes - 1 - k, column, component == 0 ? 1 : -1);
+        if (halves && rows - 1 - k != k)
+          entries.emplace_back(first + rows - 1 - k, column, normal ? 1 : -1);
         entries.emplace_back(first + k, column, 1);
       }
     }

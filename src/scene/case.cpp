@@ -225,7 +225,7 @@ void check_version(const CaseNode &root, Defects &defects) {
   if (const CaseNode *physics = root.find("physics"); physics != nullptr && physics->is_value())
     defects.collect(*physics, [&] {
       (void)choice_or(root, "physics", "",
-                      {"membrane", "plane_strain", "plane_stress", "axisymmetric"});
+                      {"membrane", "plane_strain", "plane_stress", "axisymmetric", "solid"});
     });
 }
 
@@ -323,6 +323,7 @@ SceneEntry read_case(CaseNode root, const std::string &file, const CaseChanges &
   if (const CaseNode *mesh = root.find("mesh"); mesh != nullptr)
     if (const CaseNode *mesh_file = mesh->find("file"))
       scene_entry.settings.push_back({"mesh", mesh_file->value, mesh_file->line});
+  scene_entry.mesh_dim = dimensions_of(reader);
   if (const CaseNode *set = section(reader, "mesh").find("set"))
     for (const auto &[name, node] : set->entries)
       defects.collect(node, [&, &own = name, &value = node] {

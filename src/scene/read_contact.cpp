@@ -73,30 +73,59 @@ std::function<Surface> disk_in(Reader &reader, const CaseNode &disk) {
 }
 
 std::function<Surface> plane_in(Reader &reader, const CaseNode &plane) {
-  const auto vector_in = [&](const CaseNode &node) -> Point {
-    const std::vector<double> x = numbers_in(reader, node, 2);
-    return {x[0], x[1], 0};
-  };
-  const CaseNode *pivot = plane.find("pivot"), *tilt = plane.find("tilt");
-  return plane_surface(vector_in(entry(plane, "normal")), pivot ? vector_in(*pivot) : Point{},
-                       coefficient_of(formula_in(reader, entry(plane, "position"))),
-                       tilt ? coefficient_of(formula_in(reader, *tilt))
-                            : std::function<Coefficient>());
+  const CaseNode *pivot = plane.find("pivot"), *tilt = plane.find("tilt"),
+                 *about = plane.find("about");
+  const bool solid = dimensions_of(reader) == 3;
+  if (tilt != nullptr && solid != (about != nullptr))
+    throw bad_input(solid ? "a plane in space is tilted 'about: [x, y, z]', a direction"
+                          : "a plane body sees a tilt in its plane: leave out 'about'");
+  return plane_surface(
+      vector_in(reader, entry(plane, "normal")), pivot ? vector_in(reader, *pivot) : Point{},
+      coefficient_of(formula_in(reader, entry(plane, "position"))),
+      tilt ? coefficient_of(formula_in(reader, *tilt)) : std::function<Coefficient>(),
+      about ? vector_in(reader, *about) : Point{0, 0, 1});
+}
+
+/// A sphere, a cylinder or a cone: where it is, and of the last two the direction of the axis.
+std::function<Surface> round_in(Reader &reader, const std::string &kind, const CaseNode &node) {
+  const char *place = kind == "sphere" ? "center" : kind == "cone" ? "apex" : "point";
+  const std::vector<Expression> at = components_in(reader, entry(node, place));
+  if (at.size() != 3) throw bad_input(std::string(place) + " is [x, y, z]");
+  std::array<std::function<Coefficient>, 3> centre;
+  for (std::size_t c = 0; c < 3; ++c)
+    centre[c] = coefficient_of(formula_of(reader, {at[c]}));
+  const auto size =
+      coefficient_of(formula_in(reader, entry(node, kind == "cone" ? "angle" : "radius")));
+  if (kind == "sphere") return sphere_surface(centre, size);
+  const Point axis = vector_in(reader, entry(node, "axis"));
+  return kind == "cylinder" ? cylinder_surface(centre, axis, size)
+                            : cone_surface(centre, axis, size);
 }
 
 std::function<Surface> surface_in(Reader &reader, const CaseNode &against) {
-  const CaseNode *disk = against.find("disk"), *plane = against.find("plane"),
-                 *level = against.find("level_set");
-  if ((disk != nullptr) + (plane != nullptr) + (level != nullptr) != 1)
-    throw bad_input(
-        "against: a boundary, {disk: {...}}, {plane: {...}} or {level_set: EXPRESSION}");
-  return disk    ? disk_in(reader, *disk)
-         : plane ? plane_in(reader, *plane)
-                 : level_set(value_and_gradient_of(formula_in(reader, *level)));
+  const bool solid = dimensions_of(reader) == 3;
+  const std::vector<std::string> kinds =
+      solid ? std::vector<std::string>{"plane", "sphere", "cylinder", "cone", "level_set"}
+            : std::vector<std::string>{"disk", "plane", "level_set"};
+  std::vector<std::string> found;
+  for (const auto &[kind, node] : against.entries)
+    found.push_back(kind);
+  if (found.size() != 1 || std::ranges::find(kinds, found.front()) == kinds.end())
+    throw bad_input(std::string("against: ") + (solid ? "of a solid" : "a boundary") +
+                    ", or one of " + joined(kinds) +
+                    ": {disk: {...}}, {level_set: EXPRESSION}, ...");
+  const std::string &kind = found.front();
+  const CaseNode &node = entry(against, kind);
+  if (kind == "plane") return plane_in(reader, node);
+  if (kind == "disk") return disk_in(reader, node);
+  if (kind != "level_set") return round_in(reader, kind, node);
+  const Formula phi = formula_in(reader, node);
+  return solid ? level_set(point_value_of(phi), gradient_of(phi))
+               : level_set(value_and_gradient_of(phi));
 }
 
 /// Whether contact is along the normal of the body. The published law takes that of a round body on
-/// a disk; any other that of what is rigid.
+/// a disk, in space of one on a sphere or cylinder; any other that of what is rigid.
 bool is_along_body(const CaseNode &node, bool large, bool is_round) {
   const std::string normal =
       choice_or(node, "normal", "auto", {"auto", "body", "rigid", "deformed"});
@@ -105,11 +134,25 @@ bool is_along_body(const CaseNode &node, bool large, bool is_round) {
                     "or deformed");
   if (!large && normal == "deformed")
     throw bad_input("normal: deformed is that of the deformed body: use it with kinematics: large");
-  if (normal == "auto") return !large && is_round && entry(node, "against").find("disk") != nullptr;
+  const auto is_against = [&](const char *kind) {
+    return entry(node, "against").find(kind) != nullptr;
+  };
+  if (normal == "auto")
+    return !large && is_round &&
+           (is_against("disk") || is_against("sphere") || is_against("cylinder"));
   return normal != "rigid";
 }
 
 RigidContact rigid_in(Reader &reader, const CaseNode &node, const CaseNode &against, Scene &scene) {
+  const auto in_space = [&](const char *key, const char *value) {
+    if (const CaseNode *given = node.find(key); given != nullptr && given->value == value)
+      throw bad_input("a solid has no '" + std::string(key) + ": " + value + "' yet: leave it out");
+  };
+  if (scene.dim == 3) {
+    in_space("kinematics", "large");
+    in_space("formulation", "nitsche");
+    in_space("gap", "vertical");
+  }
   check_used(node, "with something rigid",
              {"at", "against", "normal", "gap", "gap_from", "friction", "kinematics", "formulation",
               "nitsche_gamma0", "lumped"});
@@ -181,6 +224,8 @@ ContactRecipe contact_in(Reader &reader, const CaseNode &node, Scene &scene) {
     return obstacle({entry(node, "at").value, point_value_of(formula_in(reader, *above)),
                      yes_or(node, "lumped", true)});
   }
+  if (scene.dim == 3 && !against->is_table())
+    throw bad_input("two solids do not meet yet: contact of a solid is with something rigid");
   return against->is_table() ? with_something_rigid(reader, node, *against, scene)
                              : with_another_body(reader, node, against->value, scene);
 }

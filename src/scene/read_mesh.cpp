@@ -43,9 +43,10 @@ MeshRecipe recipe_of_sections(const Reader &reader) {
     add(node, "in", recipe.regions);
     if (!is_over_contacts(reader, node)) add(node, "at", recipe.boundaries);
   }
-  for (const auto &[name, node] : section(reader, "curves").entries)
-    if (std::ranges::find(recipe.regions, name) == recipe.regions.end())
-      add_name(recipe.boundaries, name);
+  for (const char *named : {"curves", "surfaces"})
+    for (const auto &[name, node] : section(reader, named).entries)
+      if (std::ranges::find(recipe.regions, name) == recipe.regions.end())
+        add_name(recipe.boundaries, name);
   return recipe;
 }
 
@@ -68,17 +69,37 @@ Circle circle_in(const Reader &reader, const CaseNode &node) {
   return {{circle[0], circle[1], 0}, circle[2], yes_or(node, "hole", false)};
 }
 
+/// A sphere, or a cylinder: a point of its axis, the direction of that, its radius.
+Circle round_in(const Reader &reader, const CaseNode &node) {
+  const CaseNode *sphere = node.find("sphere"), *cylinder = node.find("cylinder");
+  if ((sphere == nullptr) == (cylinder == nullptr))
+    throw bad_input("a surface is a sphere or a cylinder");
+  const std::vector<double> n =
+      sphere != nullptr ? numbers_in(reader, *sphere, 4) : numbers_in(reader, *cylinder, 7);
+  Circle round{{n[0], n[1], n[2]}, n.back(), yes_or(node, "hole", false)};
+  if (!(round.radius > 0)) throw bad_input("the radius of a sphere or cylinder is positive");
+  if (sphere != nullptr) return round;
+  round.axis = {n[3], n[4], n[5]};
+  if (!(norm(round.axis) > 0)) throw bad_input("the axis of a cylinder has no direction");
+  round.axis = round.axis / norm(round.axis);
+  return round;
+}
+
 } // namespace
 
 std::vector<Expression> map_of(const Reader &reader) {
   const CaseNode &map = section(reader, "map");
   if (map.is_table()) {
     const std::string scale = "(" + expression_in(reader, entry(map, "scale")).text() + ") * ";
-    return {parse_expression(scale + "x"), parse_expression(scale + "y")};
+    std::vector<Expression> scaled{parse_expression(scale + "x"), parse_expression(scale + "y")};
+    if (dimensions_of(reader) == 3) scaled.push_back(parse_expression(scale + "z"));
+    return scaled;
   }
   if (map.is_value() && map.value.empty()) return {};
   std::vector<Expression> components = components_in(reader, map);
-  if (components.size() != 2) throw bad_input("the map has two components, [x, y]");
+  if (std::ssize(components) != dimensions_of(reader))
+    throw bad_input(dimensions_of(reader) == 2 ? "the map has two components, [x, y]"
+                                               : "the map has three components, [x, y, z]");
   return components;
 }
 
@@ -129,8 +150,9 @@ private:
   std::optional<Instruction> named_from(std::size_t begin, const Program &program) {
     const Program part(program.begin() + static_cast<std::ptrdiff_t>(begin), program.end());
     const Expression condition(part, names_);
-    if (std::ranges::none_of(condition.free_names(),
-                             [](const auto &name) { return name == "x" || name == "y"; }))
+    if (std::ranges::none_of(condition.free_names(), [](const auto &name) {
+          return name == "x" || name == "y" || name == "z";
+        }))
       return std::nullopt;
     const std::string next = "piece_of_map_" + std::to_string(name_of_.size());
     names_.push_back(name_of_.emplace(condition.text(), next).first->second);
@@ -140,7 +162,10 @@ private:
   std::map<std::string, std::string> name_of_; ///< by text
 };
 
-/// Whether holds(d_x map, d_y map), at random points and parameters.
+/// Derivatives of a map by x, y and z.
+using Slopes = std::array<Point, 3>;
+
+/// Whether holds(slopes of the map), at random points and parameters.
 template <class Holds>
 bool holds_of_slopes(const Reader &reader, const Scene &scene, const Holds &holds) {
   const std::vector<Expression> map = map_of(reader);
@@ -155,7 +180,7 @@ bool holds_of_slopes(const Reader &reader, const Scene &scene, const Holds &hold
   names.insert(names.end(), conditions.begin(), conditions.end());
   std::vector<BoundExpression> bound;
   for (const Expression &component : components)
-    bound.push_back(bound_to(component, names, {"x", "y"}));
+    bound.push_back(bound_to(component, names, {"x", "y", "z"}));
   std::mt19937_64 random(1);
   const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
   constexpr int points = 400;
@@ -165,18 +190,19 @@ bool holds_of_slopes(const Reader &reader, const Scene &scene, const Holds &hold
       at.push_back(parameter.lower + unit() * (parameter.upper - parameter.lower));
     // Bodies are of any size: six decades of it about 1.
     const double size = std::pow(10, 6 * unit() - 3), angle = 2 * M_PI * unit();
-    at.insert(at.end(), {size * std::cos(angle), size * std::sin(angle), 0});
+    at.insert(at.end(), {size * std::cos(angle), size * std::sin(angle),
+                         bound.size() > 2 ? size * (2 * unit() - 1) : 0});
     for (std::size_t c = 0; c < conditions.size(); ++c)
       at.push_back(unit() < 0.5 ? 0 : 1);
-    Point by_x{}, by_y{};
-    for (std::size_t c = 0; c < 2; ++c) {
+    Slopes by{};
+    for (std::size_t c = 0; c < bound.size(); ++c) {
       double value;
-      std::array<double, 2> slopes{};
+      Point slopes{};
       bound[c].value_and_gradient(at.data(), value, slopes.data());
-      by_x[c] = slopes[0];
-      by_y[c] = slopes[1];
+      for (std::size_t k = 0; k < 3; ++k)
+        by[k][c] = slopes[k];
     }
-    if (!holds(by_x, by_y)) return false;
+    if (!holds(by)) return false;
   }
   return true;
 }
@@ -186,7 +212,8 @@ constexpr double round_off = 1e-10;
 } // namespace
 
 bool is_similarity(const Reader &reader, const Scene &scene) {
-  return holds_of_slopes(reader, scene, [](const Point &by_x, const Point &by_y) {
+  return holds_of_slopes(reader, scene, [](const Slopes &by) {
+    const auto &[by_x, by_y, by_z] = by;
     const double size = norm(by_x);
     return std::abs(size - norm(by_y)) <= round_off * size &&
            std::abs(dot(by_x, by_y)) <= round_off * size * size;
@@ -194,21 +221,27 @@ bool is_similarity(const Reader &reader, const Scene &scene) {
 }
 
 bool keeps_directions(const Reader &reader, const Scene &scene) {
-  return holds_of_slopes(reader, scene, [](const Point &by_x, const Point &by_y) {
-    return by_x[0] > 0 && std::abs(by_x[1]) <= round_off * by_x[0] &&
-           std::abs(by_y[0]) <= round_off * by_x[0] &&
-           std::abs(by_y[1] - by_x[0]) <= round_off * by_x[0];
+  const auto axes = static_cast<std::size_t>(scene.dim);
+  return holds_of_slopes(reader, scene, [axes](const Slopes &by) {
+    const double scale = by[0][0];
+    for (std::size_t k = 0; k < axes; ++k)
+      for (std::size_t c = 0; c < axes; ++c)
+        if (!(std::abs(by[k][c] - (k == c ? scale : 0)) <= round_off * scale)) return false;
+    return scale > 0;
   });
 }
 
 void read_mesh(Reader &reader, Scene &scene, Defects &defects) {
   const CaseNode &mesh = section(reader, "mesh");
+  scene.dim = dimensions_of(reader);
   const CaseNode *shape_name = mesh.find("built_in"), *file = mesh.find("file");
   const std::string usual = section(reader, "physics").value == "membrane" ? "1" : "2";
   defects.collect(mesh, [&] {
     scene.degree = choice_or(mesh, "degree", usual, {"1", "2"}) == "2" ? 2 : 1;
     if ((shape_name == nullptr) == (file == nullptr))
       throw bad_input("a mesh is 'built_in: SHAPE' or 'file: FILE.msh'");
+    if (shape_name != nullptr && scene.dim == 3)
+      throw bad_input("the built-in shapes are plane: a solid has 'file: FILE.msh' or FILE.geo");
     scene.mesh = recipe_of_sections(reader);
     if (shape_name == nullptr) return read_facts(reader, mesh, scene.mesh, defects);
     if (mesh.find("facts") != nullptr)
@@ -227,7 +260,13 @@ void read_mesh(Reader &reader, Scene &scene, Defects &defects) {
   });
   for (const auto &[name, node] : section(reader, "curves").entries)
     defects.collect(node, [&, &own = name, &value = node] {
+      if (scene.dim == 3) throw bad_input("curves are of plane bodies: a solid has 'surfaces:'");
       reader.circles[own] = {circle_in(reader, value)};
+    });
+  for (const auto &[name, node] : section(reader, "surfaces").entries)
+    defects.collect(node, [&, &own = name, &value = node] {
+      if (scene.dim == 2) throw bad_input("surfaces are of solids: a plane body has 'curves:'");
+      reader.circles[own] = {round_in(reader, value)};
     });
   for (const auto &[name, circles] : reader.circles)
     scene.curves[name] = [circles](const Point &x) { return on_circles(circles, x); };

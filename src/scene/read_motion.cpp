@@ -8,7 +8,12 @@ namespace rbvi {
 
 namespace {
 
-const std::vector<std::string> displacements{"ux", "uy"}, forces{"force_x", "force_y"};
+const std::vector<std::string> displacements{"ux", "uy", "uz"},
+    forces{"force_x", "force_y", "force_z"};
+
+bool has_one(const CaseNode &node, const std::vector<std::string> &keys) {
+  return std::ranges::any_of(keys, [&](const auto &key) { return node.find(key) != nullptr; });
+}
 
 bool is_zero(const Expression &value) {
   return value.constant() == 0.0;
@@ -20,15 +25,16 @@ using Imposed = std::vector<std::optional<Expression>>;
 Imposed imposed_in(const Reader &reader, const CaseNode &node, int components,
                    const std::vector<Expression> &motion) {
   Imposed imposed;
-  const bool moved = node.find("force_x") != nullptr || node.find("force_y") != nullptr;
+  const bool moved = has_one(node, forces);
   if (components == 1) {
     if (moved) throw bad_input("a membrane has loads, not force_x and force_y");
-    if (node.find("ux") != nullptr || node.find("uy") != nullptr)
-      throw bad_input("the displacement of a membrane is u");
+    if (has_one(node, displacements)) throw bad_input("the displacement of a membrane is u");
     return {expression_in(reader, entry(node, "u"))};
   }
   if (node.find("u") != nullptr) throw bad_input("the displacement has the components ux and uy");
-  for (std::size_t c = 0; c < displacements.size(); ++c) {
+  if (components == 2 && has_one(node, {"uz", "force_z"}))
+    throw bad_input("uz and force_z are of a solid");
+  for (std::size_t c = 0; c < static_cast<std::size_t>(components); ++c) {
     const CaseNode *value = node.find(displacements[c]);
     if (value == nullptr)
       imposed.emplace_back();
@@ -39,7 +45,10 @@ Imposed imposed_in(const Reader &reader, const CaseNode &node, int components,
     else
       imposed.emplace_back(motion[c]);
   }
-  if (!imposed[0] && !imposed[1] && !moved) throw bad_input("neither ux nor uy is imposed");
+  const auto is_set = [](const std::optional<Expression> &value) { return value.has_value(); };
+  if (std::ranges::none_of(imposed, is_set) && !moved)
+    throw bad_input(components == 2 ? "neither ux nor uy is imposed"
+                                    : "none of ux, uy and uz is imposed");
   return imposed;
 }
 
@@ -47,11 +56,13 @@ Imposed imposed_in(const Reader &reader, const CaseNode &node, int components,
 std::vector<Expression> derived_motion(Reader &reader, const Scene &scene) {
   const auto &all = section(reader, "imposed").entries;
   const bool springs = !section(reader, "springs").entries.empty(); // which it would stretch
-  if (scene.components != 2 || all.size() != 1 || springs) return {};
-  const Imposed imposed = imposed_in(reader, all.front().node, 2, {});
-  if (!imposed[0] || !imposed[1] || (is_zero(*imposed[0]) && is_zero(*imposed[1]))) return {};
-  if (scene.axisymmetric && !is_zero(*imposed[0])) return {}; // widens the body
-  std::vector<Expression> motion{*imposed[0], *imposed[1]};
+  if (scene.components == 1 || all.size() != 1 || springs) return {};
+  const Imposed imposed = imposed_in(reader, all.front().node, scene.components, {});
+  std::vector<Expression> motion;
+  for (const std::optional<Expression> &value : imposed)
+    if (value) motion.push_back(*value);
+  if (motion.size() != imposed.size() || std::ranges::all_of(motion, is_zero)) return {};
+  if (scene.axisymmetric && !is_zero(motion[0])) return {}; // widens the body
   return depends_on_point(formula_of(reader, motion)) ? std::vector<Expression>{} : motion;
 }
 
@@ -149,9 +160,7 @@ void read_motion(Reader &reader, Scene &scene, Defects &defects) {
         FixedBoundary fixed = boundary_in(reader, value, motion, scene.components);
         fixed.name = boundary;
         add_forces(reader, value, boundary, scene);
-        if (value.find("u") == nullptr && value.find("ux") == nullptr &&
-            value.find("uy") == nullptr)
-          continue;
+        if (value.find("u") == nullptr && !has_one(value, displacements)) continue;
         check_new(scene.fixed, fixed);
         scene.fixed.push_back(std::move(fixed));
       }

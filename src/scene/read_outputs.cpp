@@ -42,7 +42,10 @@ std::string contact_names(const Scene &scene) {
 }
 
 /// Whether there is a field where an output is.
-bool is_there(const std::string &name, Place place, bool membrane) {
+bool is_there(const std::string &name, Place place, const Scene &scene) {
+  const bool membrane = scene.components == 1;
+  const std::vector<std::string> of_solids{"z", "uz", "nz", "sigma_yz", "sigma_xz"};
+  if (scene.dim == 2 && std::ranges::find(of_solids, name) != of_solids.end()) return false;
   const auto is_one_of = [&](std::size_t first, std::size_t last) {
     const auto begin = output_fields().begin();
     const auto at = static_cast<std::size_t>(std::ranges::find(output_fields(), name) - begin);
@@ -50,9 +53,9 @@ bool is_there(const std::string &name, Place place, bool membrane) {
   };
   if (is_one_of(field::pressure, field::slip) || is_one_of(field::contact, field::stick))
     return place == Place::contact;
-  if (is_one_of(field::nx, field::ny)) return place == Place::boundary;
+  if (is_one_of(field::nx, field::nz)) return place == Place::boundary;
   if (is_one_of(field::sigma_xx, field::strain_energy)) return place != Place::contact && !membrane;
-  return is_one_of(field::u, field::u) ? membrane : is_one_of(field::x, field::y) || !membrane;
+  return is_one_of(field::u, field::u) ? membrane : is_one_of(field::x, field::z) || !membrane;
 }
 
 /// Throws bad_input for a field that is not there, and where a parameter or a let is called like
@@ -61,14 +64,16 @@ void check_fields(const Reader &reader, const Scene &scene, const OutputForm &fo
                   const Expression &value) {
   for (const std::string &name : value.free_names()) {
     if (std::ranges::find(output_fields(), name) == output_fields().end()) continue;
-    if (!is_there(name, form.place, scene.components == 1))
-      throw bad_input("there is no '" + name + "' " +
-                      (form.at.empty() ? "there" : "at '" + joined(form.at, "', '") + "'") +
-                      ": pressure, gap, tangential, slip, contact and stick are over contacts (" +
-                      contact_names(scene) +
-                      "), nx and ny over boundaries, stresses and "
-                      "strain_energy over boundaries, regions and at points of elastic bodies, u "
-                      "is that of a membrane, ux and uy of others");
+    if (!is_there(name, form.place, scene))
+      throw bad_input(
+          "there is no '" + name + "' " +
+          (form.at.empty() ? "there" : "at '" + joined(form.at, "', '") + "'") +
+          ": pressure, gap, tangential, slip, contact and stick are over contacts (" +
+          contact_names(scene) +
+          "), nx and ny over boundaries, stresses and "
+          "strain_energy over boundaries, regions and at points of elastic bodies, u "
+          "is that of a membrane, ux and uy of others; z, uz, nz, sigma_yz and sigma_xz "
+          "are of solids");
     if (std::ranges::find(reader.parameters, name) != reader.parameters.end() ||
         std::ranges::find(reader.lets, name, &Let::name) != reader.lets.end())
       throw bad_input("in outputs '" + name +
@@ -103,9 +108,8 @@ void put_place(const Reader &reader, const CaseNode &node, const Scene &scene, O
     if (std::ranges::find(form.at, std::string("all")) != form.at.end()) form.at.clear();
   }
   if (point != nullptr) {
-    const std::vector<double> x = numbers_in(reader, *point, 2);
     form.place = Place::point;
-    form.vector = {x[0], x[1], 0};
+    form.vector = vector_in(reader, *point);
   } else if (in != nullptr) {
     form.place = Place::region;
   } else if (at == nullptr) {
@@ -137,8 +141,7 @@ void put_reaction(const Reader &reader, const CaseNode &node, const Scene &scene
                   OutputForm &form) {
   if (node.find("at") == nullptr || node.find("in") != nullptr || node.find("where") != nullptr)
     throw bad_input("a reaction is that of boundaries, whole: {reaction: [0, 1], at: BOUNDARY}");
-  const std::vector<double> direction = numbers_in(reader, entry(node, "reaction"), 2);
-  form.vector = {direction[0], direction[1], 0};
+  form.vector = vector_in(reader, entry(node, "reaction"));
   if (!(std::abs(norm(form.vector) - 1) <= 1e-6))
     throw bad_input("the direction of a reaction has the length 1");
   check_direction(scene, form.vector, "a reaction");

@@ -119,10 +119,10 @@ Form stiffness(const std::string &region, const std::function<Material> &materia
 }
 
 /// How a stiffness depends on the map, where it is exact: a similarity of the plane leaves it as it
-/// is, of a body that is turned it is in proportion to the scale about a point of the axis. Empty:
-/// the map changes more.
+/// is, of a body in space, or one that is turned, it is in proportion to the scale about a point
+/// (of the axis). Empty: the map changes more.
 std::optional<std::vector<Factor>> factors_of_map(Reader &reader, const Scene &scene) {
-  if (!scene.axisymmetric)
+  if (!scene.axisymmetric && scene.dim == 2)
     return is_similarity(reader, scene) ? std::optional(std::vector<Factor>()) : std::nullopt;
   if (const CaseNode *scale = section(reader, "map").find("scale"))
     return std::vector{factor_of(reader, expression_in(reader, *scale))};
@@ -177,7 +177,7 @@ void add_free_strain(Reader &reader, const Expression &modulus, const Expression
   const auto moduli = products_of(reader, modulus), strains = products_of(reader, strain);
   const auto form = [&](const std::string &region, const Expression &one, const Expression &other) {
     return strain_load(region, point_value_of(formula_of(reader, {one})),
-                       point_value_of(formula_of(reader, {other})), scene.degree,
+                       point_value_of(formula_of(reader, {other})), scene.dim, scene.degree,
                        scene.axisymmetric);
   };
   for (const std::string &region : regions) {
@@ -258,9 +258,12 @@ void add_load(Reader &reader, const std::vector<Expression> &components, const M
 }
 
 /// -pressure n.
-std::vector<Expression> traction_of_pressure(const Expression &pressure) {
+std::vector<Expression> traction_of_pressure(const Expression &pressure, int dim) {
   const std::string factor = "-(" + pressure.text() + ") * ";
-  return {parse_expression(factor + "nx"), parse_expression(factor + "ny")};
+  std::vector<Expression> traction{parse_expression(factor + "nx"),
+                                   parse_expression(factor + "ny")};
+  if (dim == 3) traction.push_back(parse_expression(factor + "nz"));
+  return traction;
 }
 
 void read_load(Reader &reader, const CaseNode &node, Scene &scene) {
@@ -270,7 +273,7 @@ void read_load(Reader &reader, const CaseNode &node, Scene &scene) {
     throw bad_input("a load is a force, a pressure or a traction");
   const CaseNode &given = force != nullptr ? *force : pressure != nullptr ? *pressure : *traction;
   std::vector<Expression> components = components_in(reader, given);
-  if (pressure != nullptr) components = traction_of_pressure(components.front());
+  if (pressure != nullptr) components = traction_of_pressure(components.front(), scene.dim);
   if (components.size() != static_cast<std::size_t>(scene.components))
     throw bad_input("a load of " + counted(long(components.size()), "component") +
                     " on a displacement of " + std::to_string(scene.components));
@@ -298,8 +301,7 @@ void read_load(Reader &reader, const CaseNode &node, Scene &scene) {
 void read_physics(Reader &reader, Scene &scene, Defects &defects) {
   const CaseNode &physics = section(reader, "physics");
   const bool membrane = physics.value == "membrane";
-  scene.dim = 2;
-  scene.components = membrane ? 1 : 2;
+  scene.components = membrane ? 1 : scene.dim;
   scene.axisymmetric = physics.value == "axisymmetric";
   if (membrane) {
     const Form form = laplace("", scene.degree);

@@ -10,10 +10,10 @@ namespace {
 
 /// Their sum stretches the spring: a mean, less another one.
 std::vector<Mean> means_of(const Reader &reader, const CaseNode &node, const Scene &scene) {
-  Point direction{0, 1, 0};
+  Point direction{};
+  direction[static_cast<std::size_t>(scene.dim - 1)] = 1;
   if (const CaseNode *given = node.find("direction")) {
-    const std::vector<double> d = numbers_in(reader, *given, 2);
-    direction = {d[0], d[1], 0};
+    direction = vector_in(reader, *given);
     if (!(std::abs(norm(direction) - 1) <= 1e-6))
       throw bad_input("the direction is of the length " + short_number(norm(direction)) +
                       ": give one of length 1");

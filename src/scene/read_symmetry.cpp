@@ -8,7 +8,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr std::array<const char *, 2> axes{"x", "y"};
+constexpr std::array<const char *, 3> axes{"x", "y", "z"};
 
 /// mirror_images: 2 and 4 are short for planes through the origin.
 void read_mirrors(const Reader &reader, Scene &scene) {
@@ -19,9 +19,9 @@ void read_mirrors(const Reader &reader, Scene &scene) {
                     ": 2 is short for mirror: {x: 0}, 4 for mirror: {x: 0, y: 0}");
   if (images > 1 && planes != nullptr)
     throw bad_input("mirror_images and mirror say the same: leave out mirror_images");
-  for (int c = 0; c < 2; ++c) {
+  for (int c = 0; c < scene.dim; ++c) {
     const CaseNode *position = planes == nullptr ? nullptr : planes->find(axes[c]);
-    if (position != nullptr || images > 2 * c + 1)
+    if (position != nullptr || (c < 2 && images > 2 * c + 1))
       scene.mirrors.push_back({c, position != nullptr ? number_in(reader, *position) : 0});
   }
   if (scene.axisymmetric && cancels(scene.mirrors, 0))
@@ -41,6 +41,8 @@ void read_symmetry(const Reader &reader, Scene &scene, Defects &defects) {
     const auto found = std::ranges::find(reader.parameters, node.value);
     const CaseNode *declared = section(reader, "parameters").find(node.value);
     scene.symmetric = declared != nullptr || is_yes(node);
+    if (scene.symmetric && scene.dim == 3)
+      throw bad_input("symmetric is of plane bodies: give a half of the solid with mirror");
     if (scene.symmetric && scene.axisymmetric)
       throw bad_input("an axisymmetric body is one half, without data beyond x = 0: leave out "
                       "symmetric");

@@ -80,6 +80,16 @@ std::vector<double> numbers_in(const Reader &reader, const CaseNode &list, std::
   return numbers;
 }
 
+int dimensions_of(const Reader &reader) {
+  return section(reader, "physics").value == "solid" ? 3 : 2;
+}
+
+Point vector_in(const Reader &reader, const CaseNode &list) {
+  const std::vector<double> x =
+      numbers_in(reader, list, static_cast<std::size_t>(dimensions_of(reader)));
+  return {x[0], x[1], x.size() > 2 ? x[2] : 0};
+}
+
 std::string choice_or(const CaseNode &table, const std::string &name, const std::string &otherwise,
                       const std::vector<std::string> &choices) {
   const CaseNode *node = table.find(name);

@@ -40,6 +40,12 @@ double number_or(const Reader &reader, const CaseNode &table, const std::string 
 /// Two, or as many as asked for.
 std::vector<double> numbers_in(const Reader &reader, const CaseNode &list, std::size_t count);
 
+/// As many as the space has dimensions, in the plane with 0 behind them.
+Point vector_in(const Reader &reader, const CaseNode &list);
+
+/// 3 of a solid, else 2.
+int dimensions_of(const Reader &reader);
+
 /// The text of an entry that is one of some. Throws bad_input.
 std::string choice_or(const CaseNode &table, const std::string &name, const std::string &otherwise,
                       const std::vector<std::string> &choices);

@@ -62,8 +62,11 @@ void write_worst_pressure(const fs::path &path, const ReducedModel &model, const
   table.add("high_fidelity", truth.col(0));
   table.add("reduced", reduced.col(0));
   if (friction) {
-    table.add("high_fidelity_tangential", truth.col(1));
-    table.add("reduced_tangential", reduced.col(1));
+    const auto size = [&](const Matrix &of) -> Vector { // in the plane with its sign
+      return of.cols() == 2 ? Vector(of.col(1)) : Vector(of.rightCols(2).rowwise().norm());
+    };
+    table.add("high_fidelity_tangential", size(truth));
+    table.add("reduced_tangential", size(reduced));
   }
   table.write(path);
 }

@@ -53,8 +53,10 @@ struct Scratch {
 /// One geometry with the numbers that are set in it.
 class Geometry {
 public:
-  Geometry(std::string file, const std::map<std::string, double> &numbers, const fs::path &folder)
-      : file_(std::move(file)), numbers_(numbers), probe_(folder / "probe"), log_(folder / "log") {
+  Geometry(std::string file, int dim, const std::map<std::string, double> &numbers,
+           const fs::path &folder)
+      : file_(std::move(file)), dim_(dim), numbers_(numbers), probe_(folder / "probe"),
+        log_(folder / "log") {
     std::string lines =
         "General.Terminal = 1;\nGeneral.Verbosity = 5;\n"; // the geometry may say less
     for (const auto &[name, value] : numbers_) {
@@ -69,8 +71,8 @@ public:
   const std::string &options() const { return options_; }
   /// Returns what gmsh prints. Throws bad_input, with what it says, where it makes no mesh.
   std::string mesh(const fs::path &mesh) const {
-    const auto [status, log] =
-        run("-2 -order 1 -format msh41" + options_ + " -o " + in_shell_quotes(mesh.string()));
+    const auto [status, log] = run("-" + std::to_string(dim_) + " -order 1 -format msh41" +
+                                   options_ + " -o " + in_shell_quotes(mesh.string()));
     std::error_code ignored;
     if (status != 0 || !fs::exists(mesh, ignored))
       throw bad_input("gmsh cannot mesh '" + file_ + "': " + last_error(log));
@@ -121,6 +123,7 @@ private:
   }
 
   std::string file_, options_;
+  int dim_;
   const std::map<std::string, double> &numbers_;
   Scratch probe_, log_;
 };
@@ -132,8 +135,8 @@ fs::path mesh_named(const fs::path &folder, std::uint64_t hash) {
 }
 
 /// The hash that names the mesh in the folder.
-std::uint64_t make_mesh(const std::string &geo, const std::map<std::string, double> &numbers,
-                        const fs::path &folder) {
+std::uint64_t make_mesh(const std::string &geo, int dim,
+                        const std::map<std::string, double> &numbers, const fs::path &folder) {
   if (!fs::exists(geo)) throw bad_input("the geometry " + geo + " cannot be read");
   if (std::system("command -v gmsh > /dev/null 2>&1") != 0)
     throw bad_input("'" + geo +
@@ -141,7 +144,7 @@ std::uint64_t make_mesh(const std::string &geo, const std::map<std::string, doub
                     "Debian's package gmsh, or give a mesh (.msh)");
   make_directory(folder);
   remove_stale_temporaries(folder);
-  const Geometry geometry(geo, numbers, folder);
+  const Geometry geometry(geo, dim, numbers, folder);
   const Scratch part(folder / "part");
   const std::string log = geometry.mesh(part.file),
                     content = bytes_of(part.file) + geometry.options();
@@ -165,11 +168,11 @@ fs::path folder_of_meshes() {
   return fs::temp_directory_path() / ("rbvi_meshes_" + std::to_string(::getuid()));
 }
 
-std::string meshed(MPI_Comm comm, const std::string &geo,
+std::string meshed(MPI_Comm comm, const std::string &geo, int dim,
                    const std::map<std::string, double> &numbers, const fs::path &folder) {
   std::uint64_t hash = 0;
   collectively(comm, [&] {
-    if (rank_of(comm) == 0) hash = make_mesh(geo, numbers, folder);
+    if (rank_of(comm) == 0) hash = make_mesh(geo, dim, numbers, folder);
   });
   MPI_Bcast(&hash, 1, MPI_UINT64_T, 0, comm);
   return fs::absolute(mesh_named(folder, hash)).lexically_normal().string();

@@ -119,7 +119,7 @@ std::string case_of(const std::string &file, const fs::path &folder) {
   scene.name = folder.filename().string();
   scene.dim = 2;
   const std::string mesh_file =
-      file.ends_with(".geo") ? meshed(MPI_COMM_SELF, file, {}, folder_of_meshes()) : file;
+      file.ends_with(".geo") ? meshed(MPI_COMM_SELF, file, 2, {}, folder_of_meshes()) : file;
   const auto [regions, boundaries] = parts_of_gmsh(mesh_file, 2);
   scene.contacts.emplace_back().entities.parts = boundaries; // these may lie on each other
   const SerialMesh mesh = mesh_with_groups(scene, mesh_file);

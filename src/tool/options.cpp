@@ -176,7 +176,7 @@ void mesh_geometry(MPI_Comm comm, const std::filesystem::path &out, Setup &setup
   if (!setup.mesh.file.ends_with(".geo")) return;
   const std::filesystem::path folder = out.empty() ? folder_of_meshes() : out / "mesh";
   const SceneEntry &entry = entry_of(*setup.registry, setup.scene.name);
-  setup.mesh.file = meshed(comm, setup.mesh.file, entry.mesh_numbers, folder);
+  setup.mesh.file = meshed(comm, setup.mesh.file, entry.mesh_dim, entry.mesh_numbers, folder);
 }
 
 /// Everything but where it comes from. `names`: all options that are given.

@@ -74,23 +74,26 @@ void write_stresses(OnlineSolver &solver, const std::vector<Mu> &set, const fs::
   const std::vector<Point> points = dual_points(contact);
   std::vector<Mu> mus;
   Table table;
-  std::vector<double> interface, x, y, pressure, tangential;
+  std::vector<double> interface, pressure, tangential;
+  std::array<std::vector<double>, 3> x;
+  const auto dim = static_cast<std::size_t>(solver.scene().dim);
   for (const Mu &mu : set) {
     const Matrix stress = by_node(contact, solver.multiplier(solver.solve(mu, true)));
     for (std::size_t i = 0, row = 0; i < contact.interfaces.size(); ++i)
       for (Index node = 0; node < contact.interfaces[i]->dual().nodes(); ++node, ++row) {
         mus.push_back(mu);
         interface.push_back(static_cast<double>(i + 1));
-        x.push_back(points[row][0]);
-        y.push_back(points[row][1]);
-        pressure.push_back(stress(static_cast<Index>(row), 0));
-        tangential.push_back(stress(static_cast<Index>(row), 1));
+        for (std::size_t c = 0; c < dim; ++c)
+          x[c].push_back(points[row][c]);
+        const auto at = stress.row(static_cast<Index>(row));
+        pressure.push_back(at[0]);
+        tangential.push_back(dim == 2 ? at[1] : at.tail(2).norm());
       }
   }
   table.add(solver.scene().parameters, mus);
   table.add("interface", interface);
-  table.add("x", x);
-  table.add("y", y);
+  for (std::size_t c = 0; c < dim; ++c)
+    table.add(std::string(1, "xyz"[c]), x[c]);
   table.add("pressure", pressure);
   table.add("tangential", tangential);
   table.write(path);

@@ -71,7 +71,7 @@ DualRow dual_row(const Contact &contact, Index row);
 /// "floor: ", the contact of a row, before what is said of it.
 std::string said_of(const Contact &contact, Index row);
 
-/// The multipliers of each dual node, of all interfaces: nodes x 2, normal and tangential (zero
+/// The multipliers of each dual node, of all interfaces: nodes x dim, normal and tangential (zero
 /// without friction).
 Matrix by_node(const Contact &contact, const Vector &lambda);
 

@@ -73,14 +73,14 @@ private:
   /// The entities on which the function of a wanted node does not vanish; empty: all.
   std::vector<bool> entities_at(const WantedNodes &wanted) const;
   void set_pattern(const WantedNodes &wanted);
-  /// Of the vertices of these entities; on a curve of all, as the others stay where they are.
+  /// Of the vertices of these entities; of a boundary of all, as the others stay where they are.
   std::vector<Point> mapped_vertices(const FullMu &mu, const std::vector<bool> &entities) const;
   /// visit(entity, cell), mapped, for each of these (empty: all). Throws failure for one that is
   /// inverted.
   template <class Visit>
   void visit_entities(const FullMu &mu, const std::vector<Point> &mapped,
                       const std::vector<bool> &entities, Visit &&visit) const;
-  void check_lengths(const FullMu &mu, const std::vector<Point> &mapped) const;
+  void check_sizes(const FullMu &mu, const std::vector<Point> &mapped) const;
   /// Throws bad_input where a node cannot move along its normal.
   void check_partly_fixed(const WantedNodes &wanted, const ContactOperators &operators) const;
   void add_weights(const FullMu &mu, Index entity, const Cell &cell, EntityValues &values,

@@ -1,7 +1,7 @@
 // The forces of contact added up on two roads, for each side of each interface, on the rigid
-// motions of the plane (two translations, a turn about the origin of the mapped mesh), of a
-// membrane on the constant: as outputs know them, by the normals and pressures at points, and as
-// the solver does, lambda^T B on the motion, or Nitsche's terms on the translations.
+// motions of the plane (two translations, a turn about the origin of the mapped mesh) or of space,
+// of a membrane on the constant: as outputs know them, by the normals and pressures at points, and
+// as the solver does, lambda^T B on the motion, or Nitsche's terms on the translations.
 //
 // It sees a normal, a weight, a point or a side that one road has and the other has not. It does
 // not see a gap, which leaves forces in balance, nor a normal that both ask the same wrong function
@@ -14,8 +14,8 @@
 
 namespace rbvi {
 
-/// Two forces and a moment.
-using Resultant = std::array<double, 3>;
+/// The forces along the axes, then the moments about them.
+using Resultant = std::array<double, 6>;
 
 /// Of some forces, by outputs and by lambda^T B, and the sum of the sizes of all their terms.
 struct TwoRoads {

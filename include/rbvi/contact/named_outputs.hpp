@@ -44,23 +44,25 @@ void add_gap_error(const Scene &scene, const Contact &contact, const FullMu &mu,
                    const std::function<Vector(std::size_t i)> &of_interface, const Vector &lambda,
                    Outputs &outputs);
 
-/// The boundary of a contact interface as straight lines for integrals over it. They are cut where
-/// contact and stick end, and where the tangential stress and the slip change their sign, so that
-/// their magnitudes are as smooth. Fields at both ends of a line and at its middle, between which
-/// they are of degree 2.
+/// The boundary of a contact interface as straight lines for integrals over it, in space lines
+/// across its triangles. They are cut where contact and stick end, and where the tangential stress
+/// and the slip change their sign, so that their magnitudes are as smooth. Fields at both ends of a
+/// line and at its middle, between which they are of degree 2.
 struct ContactLine {
   std::array<OutputFields, 3> fields;
   /// What conditions see: where contact ends inside an edge the pressure falls to zero up to there,
   /// and the gap grows from there on. (The multipliers, whose integrals are forces, fall to zero at
   /// the next vertex.)
   std::array<OutputFields, 3> seen;
+  double measure; ///< the integral of 1 is the sum of these, of whole lines
 };
 
 /// `grid`: ContactInterface::fields; `bound`: of the tangential stress; a node with a pressure of
 /// at most `least` is out of contact. Contact and stick end inside an edge where way_into_edge says
 /// (contact_area.hpp); of pressures that are constant on edges they are of whole edges, and by
 /// Nitsche's method they end where P_n, or what |P_tau| is below its bound, is zero, linear between
-/// the vertices.
+/// the vertices. Of triangles they end in the middle of edges from a vertex that is in to one that
+/// is out, and lines without a measure lie along the edges, where extrema are.
 std::vector<ContactLine> contact_lines(const Grid &grid, const FrictionBound &bound, double least);
 
 } // namespace rbvi

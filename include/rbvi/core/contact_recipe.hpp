@@ -30,7 +30,7 @@ inline constexpr double sharp_turn = 36 * std::numbers::pi / 180;
 struct InterfaceEntities {
   enum class Kind {
     cells,       ///< of the region parts[0]
-    curves,      ///< edges of the boundaries `parts` (2D)
+    facets,      ///< of the boundaries `parts`: edges in the plane, triangles in space
     cells_beside ///< the boundary parts[0]: cells with an edge on it (2D)
   };
   Kind kind = Kind::cells;

@@ -29,17 +29,21 @@ std::function<PointMap> point_map_of(const Formula &components);
 std::function<Traction> traction_of(const Formula &components);
 /// A value and its derivatives by x and y.
 std::function<PointMap> value_and_gradient_of(const Formula &value);
+/// Its derivatives by x, y and z.
+std::function<PointMap> gradient_of(const Formula &value);
 /// What outputs may name beside parameters, in the order of output_fields(); what there is not at
-/// some place is NaN there. x, y: where the map takes the point; ux, uy, of a membrane u: the
-/// displacement, with the motion; of contact pressure, gap, tangential stress, slip and whether
-/// there is contact, and stick; on boundaries the normal outwards; of the body stresses and the
-/// elastic energy of a volume.
+/// some place is NaN there. x, y, z: where the map takes the point; ux, uy, uz, of a membrane u:
+/// the displacement, with the motion; of contact pressure, gap, tangential stress, slip (in space
+/// the sizes of both) and whether there is contact, and stick; on boundaries the normal outwards;
+/// of the body stresses and the elastic energy of a volume.
 namespace field {
 enum : std::size_t {
   x,
   y,
+  z,
   ux,
   uy,
+  uz,
   pressure,
   gap,
   tangential,
@@ -47,10 +51,13 @@ enum : std::size_t {
   u,
   nx,
   ny,
+  nz,
   sigma_xx,
   sigma_yy,
   sigma_zz,
   sigma_xy,
+  sigma_yz,
+  sigma_xz,
   von_mises,
   strain_energy,
   contact,

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <string>
 
 namespace rbvi {
 
@@ -35,6 +36,9 @@ inline double norm(const Point &x) {
   return std::sqrt(dot(x, x));
 }
 
+/// "(1, 0, 0.5)".
+std::string place_text(const Point &x);
+
 /// One simplex: dim + 1 vertices, in the reference and in the mapped domain.
 struct Cell {
   int dim = 2;
@@ -46,14 +50,15 @@ struct Cell {
   /// State of contact: the displacement at the nodes, node * components + c, beside the motion of
   /// the scene; null: at rest.
   const double *displacement = nullptr;
+  const int *nodes = nullptr; ///< of an entity of an interface: their numbers in its mesh
 };
 
 /// A rigid surface as a point y sees it.
 struct SurfacePoint {
   double distance;  ///< of y, signed: negative inside
   Point normal;     ///< gradient of the distance: at the next point of the surface, towards y
-  double curvature; ///< second derivative of the distance along the tangent (2D): of a disk 1 over
-                    ///< the distance from its centre
+  double curvature; ///< second derivative of the distance along the tangent (2D; 0 in space): of a
+                    ///< disk 1 over the distance from its centre
 };
 
 /// The two constants of an isotropic material, pressures:

@@ -22,6 +22,7 @@ struct Outputs {
   std::optional<double> energy;       ///< J(u) = a(u,u)/2 - f(u)
   std::optional<double> normal_force; ///< integral of the multiplier
   std::optional<double> tangential_force, reaction, horizontal_reaction;
+  std::optional<double> force_x, force_y, force_z; ///< of contact on the body, in space
   /// Sum of the lumped weights of the active nodes; of an obstacle by vertex quadrature,
   /// contact_area.
   std::optional<double> contact_measure;

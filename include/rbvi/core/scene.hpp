@@ -238,6 +238,7 @@ struct SceneEntry {
   std::vector<CaseSetting> settings{};
   std::vector<std::pair<std::string, std::string>> variants{}; ///< of its file, with what they are
   std::map<std::string, double> mesh_numbers{};                ///< of the .geo that its mesh is
+  int mesh_dim = 2;                                            ///< likewise
   std::optional<UnitSystem> units{};                           ///< of numbers with a unit
 };
 

@@ -52,10 +52,10 @@ std::function<Coefficient> lame_lambda(const std::function<Coefficient> &poisson
 std::function<Coefficient> lame_shear(const std::function<Coefficient> &poisson);
 
 /// int modulus strain div v, div in space: the load of a strain without stress, such as a thermal
-/// one, in triangles. `modulus` at the middle of a cell of the mesh, as materials are; `strain` at
-/// its points. Exact where the strain is of degree 4 (axisymmetric: 3) less that of v. Throws
-/// bad_input for a degree other than 1 and 2.
+/// one, in triangles or (dim 3) tetrahedra. `modulus` at the middle of a cell of the mesh, as
+/// materials are; `strain` at its points. Exact where the strain is of degree 4 (axisymmetric: 3)
+/// less that of v. Throws bad_input for a degree other than 1 and 2.
 Form strain_load(const std::string &region, const std::function<PointValue> &modulus,
-                 const std::function<PointValue> &strain, int degree, bool axisymmetric);
+                 const std::function<PointValue> &strain, int dim, int degree, bool axisymmetric);
 
 } // namespace rbvi

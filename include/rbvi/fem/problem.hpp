@@ -154,8 +154,7 @@ void add_named_outputs(const Problem &problem, const FullMu &mu, const Vector &u
 
 /// The same on every rank for any number of ranks. Throws bad_input for a point outside of the
 /// mesh, for a reaction of a boundary where nothing is fixed in its direction, or that shares nodes
-/// with a contact or a spring, whose forces on them are not known apart, and in three dimensions.
-/// Collective.
+/// with a contact or a spring, whose forces on them are not known apart. Collective.
 OutputCells cells_of_outputs(const Scene &scene, const Mesh &mesh, const Dofs &dofs);
 
 } // namespace rbvi

@@ -1,4 +1,5 @@
-// Boundaries with contact in two dimensions: chains of their edges, found by the facets.
+// Boundaries with contact: in two dimensions chains of their edges, found by the facets; in three
+// their rims.
 #pragma once
 
 #include "rbvi/mesh/mesh.hpp"
@@ -12,8 +13,11 @@ namespace rbvi {
 std::vector<CurvePiece> curve_pieces(const SerialMesh &mesh, const std::string &boundary,
                                      const std::string &source);
 
-/// The boundaries of a scene with contact along them; none but in two dimensions.
-std::vector<std::string> contact_curves(const Scene &scene);
+/// Mesh::open_rims of a boundary in three dimensions.
+std::vector<PetscInt> open_rim(const SerialMesh &mesh, const std::string &boundary);
+
+/// The boundaries of a scene with contact along them.
+std::vector<std::string> contact_boundaries(const Scene &scene);
 
 /// The boundaries with contact that turn smoothly and that no curve of the scene names, and how far
 /// their edges are off the arcs through their vertices. Refined edges stay where they are.

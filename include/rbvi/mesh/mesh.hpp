@@ -77,6 +77,9 @@ struct Mesh {
   std::map<std::string, std::vector<bool>> boundary;     ///< per name: local nodes on it
   std::map<std::string, std::vector<CellFacet>> facets;  ///< per boundary: each has one owner
   std::map<std::string, std::vector<CurvePiece>> curves; ///< per boundary with contact in 2D
+  /// Per boundary with contact in 3D: natural numbers of the vertices on its rim beside which the
+  /// surface of the body goes on smoothly, rising.
+  std::map<std::string, std::vector<PetscInt>> open_rims;
 };
 
 /// Local nodes of an owned cell in the order of its kernels' dofs (see Form): nodes_per_cell(dim,
