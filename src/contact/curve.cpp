@@ -141,10 +141,11 @@ ChainedEdges first_curve(const InterfaceMesh &mesh) {
   return chained(edges_of(mesh, edges_of(mesh, 0)));
 }
 
-std::size_t count_pieces(const InterfaceMesh &mesh) {
+std::size_t count_ends(const InterfaceMesh &mesh) {
+  if (mesh.dim == 3) return mesh.points.size();
   std::vector<Index> all(static_cast<std::size_t>(mesh.count()));
   std::iota(all.begin(), all.end(), Index{0});
-  return chained(edges_of(mesh, all)).shape.pieces.size();
+  return 2 * chained(edges_of(mesh, all)).shape.pieces.size();
 }
 
 namespace {

@@ -86,7 +86,6 @@ Cell EntitySum::reference_entity(Index entity) const {
   const int *nodes = mesh_.nodes_of(entity);
   for (std::size_t i = 0; i <= static_cast<std::size_t>(entity_dim_); ++i)
     cell.reference[i] = mesh_.points[nodes[i]];
-  cell.nodes = nodes;
   if (!imposed_by_.empty())
     cell.imposed_by = imposed_by_.data() + entity * mesh_.per_entity * mesh_.components;
   return cell;

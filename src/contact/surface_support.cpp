@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace rbvi {
 
@@ -72,7 +73,8 @@ private:
   };
   Faced faced_at(const FullMu &mu, const Cell &facet, const SurfacePlace &at) const;
   Cell mapped_facet(const FullMu &mu, Index facet) const;
-  const Frame &frame_at(int vertex) const { return frames_[owner_[vertex]]; }
+  /// Of the multipliers of a vertex; those of sampled triangles are known by where they are.
+  const Frame &frame_at(const Point &vertex) const { return frames_[owner_[at_.at(vertex)]]; }
   Point shear_at(const Cell &facet, const SurfacePlace &at, const Point &n,
                  std::span<const int> rows, const Vector &lambda) const;
   double tangential_force(const FullMu &mu, const Vector &lambda) const;
@@ -88,6 +90,7 @@ private:
   Index vertices_;
   std::vector<Frame> frames_; ///< of the vertices
   std::vector<Index> owner_;  ///< of each the vertex whose multipliers its function has
+  std::map<Point, int> at_;   ///< the vertices by their reference coordinates
   Vector images_;             ///< of the dual nodes
 };
 
@@ -111,8 +114,10 @@ SurfaceSupport::SurfaceSupport(const Scene &scene, InterfaceMesh interface_mesh,
     frames_.push_back(frame_of(n));
   check_body_normal();
   set_dual(vertices_, friction_.law == FrictionLaw::none ? 1 : 3, rigid.lumped, gram());
-  for (Index v = 0; v < vertices_; ++v)
+  for (Index v = 0; v < vertices_; ++v) {
+    at_.emplace(mesh_.points[v], static_cast<int>(v));
     owner_.push_back(dual_of_vertex()[v] < 0 ? v : dual_.vertices[dual_of_vertex()[v]]);
+  }
   images_ = image_counts(scene.mirrors, dual_.points);
 }
 
@@ -213,7 +218,7 @@ void SurfaceSupport::integrate(const FullMu &mu, const Cell &facet, EntityValues
       const auto row = static_cast<Index>(a);
       add(row, eta, here.normal, here.gap);
       for (std::size_t k = 0; k < 2 && friction; ++k) {
-        const Point t = carried(frame_at(facet.nodes[a]), k, here.normal);
+        const Point t = carried(frame_at(facet.reference[a]), k, here.normal);
         add(static_cast<Index>(corners + 2 * a + k), eta, t, -dot(t, motion));
       }
     }
@@ -226,8 +231,8 @@ Point SurfaceSupport::shear_at(const Cell &facet, const SurfacePlace &at, const 
   Point shear{};
   for (std::size_t i = corners; i < rows.size(); ++i)
     if (const std::size_t a = (i - corners) / 2; rows[i] >= 0 && lambda[rows[i]] != 0)
-      shear = shear +
-              at.eta[a] * lambda[rows[i]] * carried(frame_at(facet.nodes[a]), (i - corners) % 2, n);
+      shear = shear + at.eta[a] * lambda[rows[i]] *
+                          carried(frame_at(facet.reference[a]), (i - corners) % 2, n);
   return shear;
 }
 
@@ -335,7 +340,7 @@ Grid SurfaceSupport::fields(const FullMu &mu, const Vector &u, const Vector &lam
     if (dual < 0) continue;
     stresses(i, 0) = lambda[dual];
     for (std::size_t k = 0; k < 2 && friction; ++k) {
-      const Point t = carried(frame_at(static_cast<int>(i)), k, at.direction);
+      const Point t = carried(frames_[owner_[i]], k, at.direction);
       const double part = lambda[dual_.nodes() + 2 * dual + static_cast<Index>(k)];
       stresses.row(i).tail<3>() += part * Eigen::RowVector3d(t[0], t[1], t[2]);
     }

@@ -152,7 +152,7 @@ void list_interface(const Store &store, const std::string &at, Interface &interf
   });
   store(at + "/closed_ends", mesh.closed_ends, Indices{2});
   store.ask(at + "/closed_ends does not fit", [&] {
-    return mesh.closed_ends.empty() || mesh.closed_ends.size() == 2 * count_pieces(mesh);
+    return mesh.closed_ends.empty() || mesh.closed_ends.size() == count_ends(mesh);
   });
   store(at + "/dofs", mesh.dofs, Indices{mesh.columns, nodes * mesh.components, -1});
   store(at + "/imposed_by", mesh.imposed_by);

@@ -114,8 +114,8 @@ CurveShape curve_shape(const InterfaceMesh &mesh, std::size_t part, const std::s
 
 /// The edges of the first boundary of a mesh, which may be one of cells beside it.
 ChainedEdges first_curve(const InterfaceMesh &mesh);
-/// Of all boundaries.
-std::size_t count_pieces(const InterfaceMesh &mesh);
+/// Numbers in InterfaceMesh::closed_ends, where there are any.
+std::size_t count_ends(const InterfaceMesh &mesh);
 
 /// With the circular arcs through the ends and the middles of edges of degree 2, where a middle is
 /// off its edge (move_middles): Facing::on_curve.

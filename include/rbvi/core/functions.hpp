@@ -50,7 +50,6 @@ struct Cell {
   /// State of contact: the displacement at the nodes, node * components + c, beside the motion of
   /// the scene; null: at rest.
   const double *displacement = nullptr;
-  const int *nodes = nullptr; ///< of an entity of an interface: their numbers in its mesh
 };
 
 /// A rigid surface as a point y sees it.
