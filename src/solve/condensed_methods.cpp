@@ -1,6 +1,8 @@
 // Active sets on the multipliers: by columns of the compliance of the contact dofs.
 #include "contact_method.hpp"
 
+#include "proportional_body.hpp"
+
 #include "rbvi/contact/history.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/method/several_answers.hpp"
@@ -90,6 +92,8 @@ public:
   using OnColumns::OnColumns;
   ContactRows begin(const Vector &slip) override {
     if (part_fits_ && !part_ && solves_ > 0) part_ = std::make_unique<ScaledPart>(problem_);
+    if (proportional_ && !whole_ && solves_ > 0)
+      whole_ = std::make_unique<ProportionalBody>(problem_);
     ++solves_;
     return OnColumns::begin(slip);
   }
@@ -103,12 +107,15 @@ private:
   MethodResult refined(FullBody &body, const ContactTask &task);
   Vector start_of(const ContactTask &task) {
     if (task.near != nullptr) return task.near->start.x;
-    const bool columns_are_kept = part_ || body_.count() > 0;
+    const bool columns_are_kept = part_ || whole_ || body_.count() > 0;
     return columns_are_kept ? Vector() : rough_start(ksp_, problem_, task.op);
   }
 
   const bool part_fits_ = ScaledPart::fits(problem_.scene());
-  std::unique_ptr<ScaledPart> part_; ///< where a part of A is scaled, from the second mu on
+  const bool proportional_ =
+      ProportionalBody::fits(problem_.scene()) && problem_.free_bodies().empty();
+  std::unique_ptr<ScaledPart> part_;        ///< where a part of A is scaled, from the second mu on
+  std::unique_ptr<ProportionalBody> whole_; ///< where all of it is, likewise
   int solves_ = 0;
 };
 
@@ -119,8 +126,13 @@ MethodResult Condensed::solve(const ContactTask &task) {
     part_->set(op);
     result = refined(*part_, task);
   }
-  // What a part leaves by round-off, the body itself may not.
-  if (!part_ || !(result.kkt.largest() <= residual_limit)) result = refined(body_, task);
+  if (whole_) {
+    whole_->set(op);
+    result = refined(*whole_, task);
+  }
+  // What these leave by round-off, the body itself may not.
+  if (!(part_ || whole_) || !(result.kkt.largest() <= residual_limit))
+    result = refined(body_, task);
   if (!result.converged) return result;
   measure(problem_, op, op.weights, result);
   result.slip = slip_left(problem_, op, task.slip, result);

@@ -38,7 +38,7 @@ double measure(const std::vector<ContactLine> &lines, std::size_t field) {
 
 double whole(const std::vector<ContactLine> &lines) {
   double sum = 0;
-  for (const auto &[fields, seen] : lines)
+  for (const auto &[fields, seen, measure] : lines)
     sum += fields[1][field::x] - fields[0][field::x];
   return sum;
 }
@@ -57,7 +57,7 @@ TEST(ContactLines, EndWherePressureAndGapSay) {
   EXPECT_NEAR(measure(lines, field::contact), end, 0.015) << "of nodal values 0.1 apart";
   EXPECT_EQ(measure(lines, field::stick), 0) << "no friction";
   double force = 0;
-  for (const auto &[fields, seen] : lines) {
+  for (const auto &[fields, seen, measure] : lines) {
     force += (fields[1][field::x] - fields[0][field::x]) *
              (fields[0][field::pressure] + fields[1][field::pressure]) / 2;
     for (const std::size_t e : {0, 1})
@@ -91,7 +91,7 @@ TEST(ContactLines, CutWhereSignsChange) {
       contact_lines(line(Vector::Ones(4), Vector::Zero(4), shear, slip), {.coefficient = 0.1}, 0);
   EXPECT_EQ(lines.size(), 5U);
   double tangential = 0, way = 0;
-  for (const auto &[fields, seen] : lines) {
+  for (const auto &[fields, seen, measure] : lines) {
     const auto &[a, b, middle] = fields;
     const double length = b[field::x] - a[field::x];
     tangential += length * std::abs(a[field::tangential] + b[field::tangential]) / 2;

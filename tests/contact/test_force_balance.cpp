@@ -59,8 +59,8 @@ TEST(ForceBalance, BothRoadsAgree) {
       const std::vector<TwoRoads> sides = two_roads(scene, interface, mu, {}, lambda, by_solver);
       ASSERT_EQ(sides.size(), 1U);
       EXPECT_LT(sides.front().difference(), 1e-14);
-      for (const double force : sides.front().by_points)
-        EXPECT_GT(std::abs(force), 0.05) << "there is something to compare";
+      for (const std::size_t term : {0U, 1U, 5U}) // two forces and a moment
+        EXPECT_GT(std::abs(sides.front().by_points[term]), 0.05) << "there is something to compare";
       EXPECT_GT(sides.front().by_points[1], 1) << "upwards, onto the body";
     }
     check_forces(scene, contact, mu, {}, lambda, &operators.b);
