@@ -10,7 +10,8 @@
 namespace rbvi {
 
 /// Gmsh text of the unit cube in n^3 boxes of six tetrahedra; region "core": the middle third,
-/// boundary "boundary": all sides. Vertices inside are moved by up to `shake` lengths of a box.
+/// boundary "boundary": all sides, "x0", "x1", ..., "z1": each of them. Vertices inside are moved
+/// by up to `shake` lengths of a box.
 inline std::string cube_mesh(int n, double shake = 0) {
   std::ostringstream nodes, elements;
   int element = 0;
@@ -57,12 +58,15 @@ inline std::string cube_mesh(int n, double shake = 0) {
             at[(axis + 2) % 3] = q + b;
             return node(at[0], at[1], at[2]);
           };
-          add(2, 1, {corner(0, 0), corner(1, 0), corner(1, 1)});
-          add(2, 1, {corner(0, 0), corner(0, 1), corner(1, 1)});
+          for (const int group : {1, 4 + 2 * axis + (side > 0 ? 1 : 0)}) {
+            add(2, group, {corner(0, 0), corner(1, 0), corner(1, 1)});
+            add(2, group, {corner(0, 0), corner(0, 1), corner(1, 1)});
+          }
         }
   std::ostringstream out;
-  out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n2 1 \"boundary\"\n3 2 \"core\"\n"
-      << "3 3 \"rest\"\n$EndPhysicalNames\n$Nodes\n"
+  out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n9\n2 1 \"boundary\"\n3 2 \"core\"\n"
+      << "3 3 \"rest\"\n2 4 \"x0\"\n2 5 \"x1\"\n2 6 \"y0\"\n2 7 \"y1\"\n2 8 \"z0\"\n2 9 "
+         "\"z1\"\n$EndPhysicalNames\n$Nodes\n"
       << (n + 1) * (n + 1) * (n + 1) << "\n"
       << nodes.str() << "$EndNodes\n$Elements\n"
       << element << "\n"

@@ -107,20 +107,22 @@ std::vector<Index> EntitySum::dual_functions(Index vertices, bool lumped) const 
         "scene " + scene_.name +
         ": the displacement is fixed on all of a contact interface, which cannot move it");
   if (count == vertices || lumped) return result;
-  const std::vector<Index> own = result;
-  std::vector<double> nearest(result.size(), std::numeric_limits<double>::infinity());
-  for (Index e = 0; e < mesh_.count(); ++e)
-    for (int a = 0; a <= entity_dim_; ++a)
-      for (int b = 0; b <= entity_dim_; ++b) {
-        const auto fixed = static_cast<std::size_t>(mesh_.nodes_of(e)[a]),
-                   beside = static_cast<std::size_t>(mesh_.nodes_of(e)[b]);
-        if (own[fixed] >= 0 || own[beside] < 0) continue;
-        const Point &x = mesh_.points[fixed], &y = mesh_.points[beside];
-        const double distance = std::hypot(x[0] - y[0], x[1] - y[1], x[2] - y[2]);
-        if (!(distance < nearest[fixed])) continue;
-        nearest[fixed] = distance;
-        result[fixed] = own[beside];
-      }
+  for (std::vector<Index> own; own != result;) { // layer by layer of fixed vertices
+    own = result;
+    std::vector<double> nearest(result.size(), std::numeric_limits<double>::infinity());
+    for (Index e = 0; e < mesh_.count(); ++e)
+      for (int a = 0; a <= entity_dim_; ++a)
+        for (int b = 0; b <= entity_dim_; ++b) {
+          const auto fixed = static_cast<std::size_t>(mesh_.nodes_of(e)[a]),
+                     beside = static_cast<std::size_t>(mesh_.nodes_of(e)[b]);
+          if (own[fixed] >= 0 || own[beside] < 0) continue;
+          const Point &x = mesh_.points[fixed], &y = mesh_.points[beside];
+          const double distance = std::hypot(x[0] - y[0], x[1] - y[1], x[2] - y[2]);
+          if (!(distance < nearest[fixed])) continue;
+          nearest[fixed] = distance;
+          result[fixed] = own[beside];
+        }
+  }
   return result;
 }
 

@@ -1,8 +1,8 @@
 // Tangents of surfaces in space. Each node of the multipliers has a frame {n, t_1, t_2}, made once
-// from the normal of the reference mesh, so that multipliers of all mu are in the same frame. At a
-// point of contact with the normal n' its tangents are those that the smallest rotation from n to
-// n' takes them to; in the plane that is the quarter turn of n'. Nothing depends on which t_1 is
-// taken: another one turns the multipliers of its node.
+// from the normal of the reference mesh, so that multipliers of all mu are in the same frame. The
+// smallest rotation from n to the normal of contact at the node takes it there, and that from there
+// to the normal of a point beside it to the point; in the plane both give the quarter turn of the
+// normal. Nothing depends on which t_1 is taken: another one turns the multipliers of its node.
 #pragma once
 
 #include "rbvi/core/functions.hpp"

@@ -73,13 +73,14 @@ private:
   };
   Faced faced_at(const FullMu &mu, const Cell &facet, const SurfacePlace &at) const;
   Cell mapped_facet(const FullMu &mu, Index facet) const;
-  /// Of the multipliers of a vertex; those of sampled triangles are known by where they are.
-  const Frame &frame_at(const Point &vertex) const { return frames_[owner_[at_.at(vertex)]]; }
-  Point shear_at(const Cell &facet, const SurfacePlace &at, const Point &n,
-                 std::span<const int> rows, const Vector &lambda) const;
+  using Frames = std::array<Frame, corners>;
+  Frame frame_at(const FullMu &mu, Index vertex) const;
+  Frames frames_at(const FullMu &mu, const Cell &facet) const;
+  static Point shear_at(const Frames &frames, const SurfacePlace &at, const Point &n,
+                        std::span<const int> rows, const Vector &lambda);
   double tangential_force(const FullMu &mu, const Vector &lambda) const;
   Vector shear_sizes(const Vector &lambda) const;
-  double direction_count(const Vector &lambda) const;
+  double direction_count(const FullMu &mu, const Vector &lambda) const;
   std::vector<Point> vertex_normals() const;
   SparseMatrix gram() const;
   void check_body_normal() const;
@@ -88,7 +89,7 @@ private:
   Friction friction_;
   std::vector<SurfacePlace> places_;
   Index vertices_;
-  std::vector<Frame> frames_; ///< of the vertices
+  std::vector<Frame> frames_; ///< of the vertices, by the normals of the reference mesh
   std::vector<Index> owner_;  ///< of each the vertex whose multipliers its function has
   std::map<Point, int> at_;   ///< the vertices by their reference coordinates
   Vector images_;             ///< of the dual nodes
@@ -201,8 +202,26 @@ SurfaceSupport::Faced SurfaceSupport::faced_at(const FullMu &mu, const Cell &fac
           facing_.at(mu, point, {}), point.motion};
 }
 
+/// The frame of the multipliers of a vertex at mu, by the normal of contact there.
+Frame SurfaceSupport::frame_at(const FullMu &mu, Index vertex) const {
+  const Frame &frame = frames_[owner_[vertex]];
+  const Point &x = mesh_.points[owner_[vertex]],
+              n = facing_.normal ? facing_.normal(mu, curve_point(facing_, x))
+                                 : facing_.at(mu, place(scene_, facing_, mu, x), {}).normal;
+  return {n, {carried(frame, 0, n), carried(frame, 1, n)}};
+}
+
+/// Vertices of sampled triangles are known by where they are. Not used without friction.
+SurfaceSupport::Frames SurfaceSupport::frames_at(const FullMu &mu, const Cell &facet) const {
+  Frames frames{};
+  for (std::size_t a = 0; a < corners && dual_.components == 3; ++a)
+    frames[a] = frame_at(mu, at_.at(facet.reference[a]));
+  return frames;
+}
+
 void SurfaceSupport::integrate(const FullMu &mu, const Cell &facet, EntityValues &values) const {
   const bool friction = values.b.rows() > static_cast<Index>(corners);
+  const Frames frames = frames_at(mu, facet);
   values.b.setZero();
   values.g.setZero();
   for (const SurfacePlace &at : places_) {
@@ -218,7 +237,7 @@ void SurfaceSupport::integrate(const FullMu &mu, const Cell &facet, EntityValues
       const auto row = static_cast<Index>(a);
       add(row, eta, here.normal, here.gap);
       for (std::size_t k = 0; k < 2 && friction; ++k) {
-        const Point t = carried(frame_at(facet.reference[a]), k, here.normal);
+        const Point t = carried(frames[a], k, here.normal);
         add(static_cast<Index>(corners + 2 * a + k), eta, t, -dot(t, motion));
       }
     }
@@ -226,13 +245,12 @@ void SurfaceSupport::integrate(const FullMu &mu, const Cell &facet, EntityValues
 }
 
 /// The tangential traction, where the normal is n.
-Point SurfaceSupport::shear_at(const Cell &facet, const SurfacePlace &at, const Point &n,
-                               std::span<const int> rows, const Vector &lambda) const {
+Point SurfaceSupport::shear_at(const Frames &frames, const SurfacePlace &at, const Point &n,
+                               std::span<const int> rows, const Vector &lambda) {
   Point shear{};
   for (std::size_t i = corners; i < rows.size(); ++i)
     if (const std::size_t a = (i - corners) / 2; rows[i] >= 0 && lambda[rows[i]] != 0)
-      shear = shear + at.eta[a] * lambda[rows[i]] *
-                          carried(frame_at(facet.reference[a]), (i - corners) % 2, n);
+      shear = shear + at.eta[a] * lambda[rows[i]] * carried(frames[a], (i - corners) % 2, n);
   return shear;
 }
 
@@ -245,6 +263,7 @@ PointForces SurfaceSupport::point_forces(const FullMu &mu, const ContactState &,
     if (std::ranges::none_of(rows, [&](Index row) { return row >= 0 && lambda[row] != 0; }))
       continue;
     const Cell facet = mapped_facet(mu, e);
+    const Frames frames = frames_at(mu, facet);
     for (const SurfacePlace &at : places_) {
       const auto [weight, x, here, motion] = faced_at(mu, facet, at);
       double pressure = 0;
@@ -255,7 +274,7 @@ PointForces SurfaceSupport::point_forces(const FullMu &mu, const ContactState &,
                            point_at(facet.reference, at.eta, corners));
       forces.push_back(
           {0, x,
-           -weight * (pressure * here.normal + shear_at(facet, at, here.normal, rows, lambda))});
+           -weight * (pressure * here.normal + shear_at(frames, at, here.normal, rows, lambda))});
     }
   }
   return forces;
@@ -269,9 +288,10 @@ double SurfaceSupport::tangential_force(const FullMu &mu, const Vector &lambda) 
                              [&](Index row) { return row >= 0 && lambda[row] != 0; }))
       continue;
     const Cell facet = mapped_facet(mu, e);
+    const Frames frames = frames_at(mu, facet);
     for (const SurfacePlace &at : places_) {
       const Faced faced = faced_at(mu, facet, at);
-      sum += faced.measure * norm(shear_at(facet, at, faced.at.normal, rows, lambda));
+      sum += faced.measure * norm(shear_at(frames, at, faced.at.normal, rows, lambda));
     }
   }
   return sum;
@@ -283,15 +303,16 @@ Vector SurfaceSupport::shear_sizes(const Vector &lambda) const {
 }
 
 /// 1 where the tangential tractions of all nodes in contact have a part along their sum, else 2.
-double SurfaceSupport::direction_count(const Vector &lambda) const {
+double SurfaceSupport::direction_count(const FullMu &mu, const Vector &lambda) const {
   std::vector<Point> tractions;
   Point sum{};
   for (Index i = 0; i < dual_.nodes(); ++i) {
     if (!(lambda[i] > 0)) continue;
     Point &traction = tractions.emplace_back(Point{});
+    const Frame frame = frame_at(mu, dual_.vertices[i]);
     for (std::size_t k = 0; k < 2; ++k)
-      traction = traction + lambda[dual_.nodes() + 2 * i + static_cast<Index>(k)] *
-                                frames_[dual_.vertices[i]].tangents[k];
+      traction =
+          traction + lambda[dual_.nodes() + 2 * i + static_cast<Index>(k)] * frame.tangents[k];
     sum = sum + traction;
   }
   return std::ranges::all_of(tractions, [&](const Point &of) { return dot(of, sum) > 0; }) ? 1 : 2;
@@ -306,7 +327,7 @@ void SurfaceSupport::outputs(const FullMu &mu, const ContactOperators &operators
     sizes << pressure, shear_sizes(lambda);
     friction_outputs(images_, tangential_force(mu, lambda), operators.weights, sizes, bound(mu),
                      outputs);
-    outputs.slip_directions = direction_count(lambda);
+    outputs.slip_directions = direction_count(mu, lambda);
     outputs.stick_half_width.reset();
   }
   Point force{};
@@ -340,7 +361,7 @@ Grid SurfaceSupport::fields(const FullMu &mu, const Vector &u, const Vector &lam
     if (dual < 0) continue;
     stresses(i, 0) = lambda[dual];
     for (std::size_t k = 0; k < 2 && friction; ++k) {
-      const Point t = carried(frames_[owner_[i]], k, at.direction);
+      const Point t = carried(frame_at(mu, i), k, at.direction);
       const double part = lambda[dual_.nodes() + 2 * dual + static_cast<Index>(k)];
       stresses.row(i).tail<3>() += part * Eigen::RowVector3d(t[0], t[1], t[2]);
     }

@@ -264,7 +264,8 @@ void claim_facets(const Found &found, const ContactRecipe &contact, Facets &face
       facet.insert(found.natural[node]);
     const auto [known, is_new] = facets.emplace(facet, &contact);
     if (!is_new)
-      throw bad_input(both(*known->second, contact) + "share the facet from " +
+      throw bad_input(both(*known->second, contact) +
+                      (found.mesh.dim == 2 ? "share the edge from " : "share the triangle from ") +
                       place_text(found.mesh.points[corners[0]]) + " to " +
                       place_text(found.mesh.points[corners[1]]) +
                       ": give each a boundary of its own");

@@ -221,10 +221,9 @@ void fill_cell_middles(Mesh &mesh, PetscInt first_vertex) {
     std::sort(ends.begin(), ends.end());
     middle[ends] = static_cast<int>(node);
   }
-  const std::size_t edges = mesh.dim == 2 ? 3 : 6;
   for (const auto &cell : mesh.cells) {
     std::array<int, 6> middles{-1, -1, -1, -1, -1, -1};
-    for (std::size_t e = 0; e < edges; ++e) {
+    for (std::size_t e = 0; e < (mesh.dim == 2 ? 3U : 6U); ++e) {
       std::array<PetscInt, 2> ends{cell[simplex_edges[e][0]], cell[simplex_edges[e][1]]};
       std::sort(ends.begin(), ends.end());
       middles[e] = middle.at(ends);
@@ -233,7 +232,7 @@ void fill_cell_middles(Mesh &mesh, PetscInt first_vertex) {
   }
 }
 
-/// The undistributed mesh, on the first rank: elsewhere there is nothing of it.
+/// On the first rank: elsewhere there is nothing of it.
 struct Undistributed {
   SerialMesh mesh;
   std::map<std::string, std::vector<SerialFacet>> facets; ///< of every boundary
@@ -291,7 +290,7 @@ void fill_bodies(Mesh &mesh, const Migration &migration, const std::vector<int> 
 }
 
 /// The pieces of the first rank, on every rank.
-void share(MPI_Comm comm, std::vector<CurvePiece> &pieces) {
+std::vector<CurvePiece> shared(MPI_Comm comm, std::vector<CurvePiece> pieces) {
   std::vector<PetscInt> packed;
   for (const auto &[vertices, loop, ends] : pieces) {
     packed.insert(packed.end(), {static_cast<PetscInt>(vertices.size()), loop, ends[0], ends[1]});
@@ -304,6 +303,7 @@ void share(MPI_Comm comm, std::vector<CurvePiece> &pieces) {
   pieces.clear();
   for (auto at = packed.begin(); at != packed.end(); at += 4 + at[0])
     pieces.push_back({{at + 4, at + 4 + at[0]}, at[1] != 0, {at[2] != 0, at[3] != 0}});
+  return pieces;
 }
 
 std::vector<bool> at_nodes(const Mesh &mesh, const std::vector<char> &marks) {
@@ -317,8 +317,7 @@ std::vector<bool> at_nodes(const Mesh &mesh, const std::vector<char> &marks) {
 
 Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
   const Communicator world(comm);
-  Undistributed all;
-  all.mesh.dim = scene.dim;
+  Undistributed all{.mesh = {.dim = scene.dim}};
   std::vector<SerialMesh> levels;
   std::vector<int> part;
   std::string fingerprint(16, '0');
@@ -357,8 +356,7 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
   fill_nodes_and_cells(mesh, migration, edges, all.points);
   fill_bodies(mesh, migration, all.bodies);
   for (const std::string &name : contact_boundaries(scene)) {
-    share(comm, all.curves[name]);
-    mesh.curves[name] = all.curves[name];
+    mesh.curves[name] = shared(comm, all.curves[name]);
     mesh.open_rims[name] = gather_all(comm, all.open_rims[name], MPIU_INT);
   }
   for (const std::string &name : scene.mesh.regions)

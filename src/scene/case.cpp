@@ -320,9 +320,8 @@ SceneEntry read_case(CaseNode root, const std::string &file, const CaseChanges &
                             ": value'");
   for (const auto &[name, node] : section(reader, "options").entries)
     scene_entry.settings.push_back({name, setting_text(node), node.line});
-  if (const CaseNode *mesh = root.find("mesh"); mesh != nullptr)
-    if (const CaseNode *mesh_file = mesh->find("file"))
-      scene_entry.settings.push_back({"mesh", mesh_file->value, mesh_file->line});
+  if (const CaseNode *mesh_file = section(reader, "mesh").find("file"))
+    scene_entry.settings.push_back({"mesh", mesh_file->value, mesh_file->line});
   scene_entry.mesh_dim = dimensions_of(reader);
   if (const CaseNode *set = section(reader, "mesh").find("set"))
     for (const auto &[name, node] : set->entries)

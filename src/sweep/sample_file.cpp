@@ -15,7 +15,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr int sample_schema = 11;
+constexpr int sample_schema = 12;
 
 void check_settings(const std::filesystem::path &path, const Settings &mine,
                     const Settings &theirs) {

@@ -212,7 +212,7 @@ TEST(RigidPlane, TheBoundOfFrictionIsThatOfItsParameter) {
 
 TEST(RigidPlane, RefusesANormalThatIsNotOne) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const Point &normal : {Point{0, -2, 0}, Point{}, Point{nan, 1, 0}, Point{0, 0.6, 0.8}})
+  for (const Point &normal : {Point{0, -2, 0}, Point{}, Point{nan, 1, 0}, Point{0, 0.6, 0.9}})
     EXPECT_TRUE(refuses("the normal of a rigid plane is (",
                         [&] { plane_surface(normal, pivot, position()); }));
 }

@@ -95,7 +95,7 @@ TEST(WrongCase, Keys) {
       {{{"contact", "{floor: {at: contact, agaisnt: top}}"}}, "the nearest is 'against'"},
       {{{"contact", "{floor: {against: {plane: {normal: [0, -1], position: 0}}}}"}},
        "'at' is missing"},
-      {{{"imposed", "{top: {at: top, uz: 0}}"}}, "unknown key 'uz' of imposed"},
+      {{{"imposed", "{top: {at: top, uz: 0}}"}}, "uz and force_z are of a solid"},
       {{{"materials", "{rubber: {at: all, E: 15}}"}}, "'nu' is missing"},
       {{{"materials", "{rubber: {at: all, lambda: 15}}"}}, "'mu' is missing"},
       {{{"materials", "{rubber: {at: all, lambda: 15, mu: 5, E: 3}}"}},

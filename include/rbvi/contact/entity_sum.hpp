@@ -58,7 +58,8 @@ protected:
   EntitySum(const Scene &scene, InterfaceMesh mesh, int entity_dim);
   /// The dual functions are the hats of the first `vertices` nodes of the mesh that can move. The
   /// hat of a fixed one, which has no displacement to act on, is added to that of the nearest
-  /// vertex beside it that can, so that the functions sum to 1 still; with vertex quadrature
+  /// vertex beside it that can, or to where that of a fixed one beside it is added, so that the
+  /// functions sum to 1 still; with vertex quadrature
   /// (`lumped`), where a function acts on its own vertex alone, it is left out. `gram`: of all
   /// hats. Throws bad_input where no vertex can move.
   void set_dual(Index vertices, int components, bool lumped, const SparseMatrix &gram);
