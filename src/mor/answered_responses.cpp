@@ -75,7 +75,9 @@ bool take_answers(const Problem &problem, const ReducedModel &model, Index size,
 bool awaits_answers(const Problem &problem, const CondensedLoads &loads,
                     const CondensedOptions &options) {
   const double numbers = static_cast<double>(loads.joining()) * problem.dofs().total_free;
-  return (!loads.units.empty() || loads.join) && constant_stiffness(problem.scene()) &&
+  const Scene &scene = problem.scene();
+  const bool scales = parameters_beside_common(scene.a, scene.parameters).empty(); // or is constant
+  return (!loads.units.empty() || loads.join) && scales &&
          options.responses > 0 && numbers > options.large_fields;
 }
 
@@ -127,8 +129,13 @@ int append_answered_responses(Problem &problem, const CondensedLoads &loads,
   const CondensedOperator &condensed = model.contact.law->condensed;
   const Index size = loads.columns.cols();
   ResponseDirections directions((condensed.terms * condensed.shape).reshaped(size, size));
+  const Scene &scene = problem.scene();
+  const bool scales = !constant_stiffness(scene);
   const auto multipliers = [&](const ReducedAnswer &answer) {
-    return !loads.units.empty() ? answer.reaction : Vector(answer.theta_b[0] * answer.lambda);
+    const double softer =
+        scales ? 1 / common_coefficient(scene.a, scene.parameters, answer.mu) : 1;
+    return Vector(!loads.units.empty() ? softer * answer.reaction
+                                       : softer * answer.theta_b[0] * answer.lambda);
   };
   const bool answered = take_answers(problem, model, size, multipliers, [&](const Matrix &answers) {
     if (directions.left(answers) <= between * tolerance) return false; // infinite before the first

@@ -119,9 +119,10 @@ TEST(InterfaceCurve, RefusesACurveThatIsHeld) {
                Error);
 }
 
-TEST(InterfaceCurve, IsForTwoDimensions) {
+TEST(InterfaceCurve, NitschesMethodIsForTwoDimensions) {
   Body disk("rigid_disk", {{"arc_edges", "20"}});
   disk.mesh.dim = 3;
+  disk.scene.contacts.front().entities.kind = InterfaceEntities::Kind::cells_beside;
   try {
     (void)place_interfaces(disk.mesh, disk.dofs, disk.scene);
     ADD_FAILURE() << "accepted";

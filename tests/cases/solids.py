@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""solids.py BIN OUT: a solid from its geometry to a model, at 1 and 2 ranks, and what is asked of it.
+
+A coarse half-ball with friction and four free parameters: the model answers at points that it has not
+seen as full solves do, forces and all; two ranks make the same one; the fields that ParaView opens are
+those of tetrahedra and triangles.
+"""
+
+import subprocess
+import sys
+from pathlib import Path
+
+CASES = Path(__file__).resolve().parents[2] / "cases"
+CASE = ["-case", CASES / "rigid_ball/case.yaml", "-set", "mesh.set.size=2"]
+FREE = ["-parameters", "radius,indentation,offset_x,shear"]
+UNSEEN = ("0.83,0.07,-0.04,0.02", "1.21,0.045,0.08,0.005")
+ACCURATE = 1e-6  # of each output; measured at 5 random points: 2e-7 at most
+
+
+def called(*command):
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def numbers(text):
+    """The outputs of one answer by name."""
+    found = {}
+    for line in text.splitlines():
+        words = line.split()
+        if len(words) >= 2 and words[0] in ("energy", "normal_force", "tangential_force", "force_x",
+                                            "force_y", "force_z", "peak_pressure"):
+            found[words[0]] = float(words[1])
+    return found
+
+
+def compare(one, other, tolerance, what):
+    if set(one) != set(other) or len(one) != 7:
+        sys.exit(f"{what}: outputs {sorted(one)} and {sorted(other)}")
+    scale = abs(one["normal_force"])
+    for name, value in one.items():
+        size = scale if name.startswith("force") else abs(value)
+        if not abs(value - other[name]) <= tolerance * size:
+            sys.exit(f"{what}: {name} is {other[name]}, not {value}")
+
+
+def main(programs, out):
+    tool, online = programs / "rbvi", programs / "rbvi-online"
+    for ranks in (1, 2):
+        called("mpirun", "-n", ranks, tool, "offline", *CASE, *FREE, "-train", "random:60:1", "-valid",
+               "random:2:2", "-out", out / f"np{ranks}")
+    called(tool, "verify", "-out", out / "np2")
+    for mu in UNSEEN:
+        full = numbers(called(tool, "solve", *CASE, *FREE, "-mu", mu))
+        one, two = (numbers(called(online, out / f"np{ranks}/model.h5", "--mu", mu)) for ranks in (1, 2))
+        compare(full, two, ACCURATE, f"reduced at {mu}")
+        compare(one, two, 1e-8, f"one and two ranks at {mu}")
+    called(online, out / "np2/model.h5", "--mu", UNSEEN[0], "--vtu", out / "u.vtu", "--contact",
+           out / "contact.csv")
+    for name, fields in (("u", ("von_mises", "sigma_xz")), ("u_contact", ("pressure", "tangential_stress"))):
+        text = (out / f"{name}.vtu").read_text(encoding="utf-8")
+        for field in fields:
+            if f'Name="{field}"' not in text:
+                sys.exit(f"{name}.vtu has no field {field}")
+    header = (out / "contact.csv").read_text(encoding="utf-8").splitlines()[0]
+    for column in ("z", "pressure", "tangential_stress_z", "slip_x"):
+        if column not in header.split(","):
+            sys.exit(f"contact.csv has no column {column}")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), Path(sys.argv[2]))
