@@ -5,12 +5,14 @@ from functools import partial
 
 import numpy as np
 from matplotlib.collections import LineCollection
+from matplotlib.colors import to_rgb
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from figure_tools import (BLUE, GREEN, ORANGE, PURPLE, beside, in_length, label_plane, parameters_of,
-                          plt, read_grid, wider)
+from figure_tools import (BLUE, GREEN, ORANGE, PURPLE, beside, in_length, is_solid, label_plane,
+                          parameters_of, plt, read_grid, wider)
 from panels import Curve, Drawn, Lines, Triangles, legend_below, ratio_of, save_panels
+from solid_figures import FROM_ABOVE, draw_painted, plan_of, rows_of, skin_of, view_behind, view_of
 
 # Places in the box by the names of their files.
 PLACES = {"middle": ("middle of the box", BLUE), "least": ("where the gap is least", ORANGE),
@@ -20,6 +22,8 @@ FLAT = 0.1  # of the length of a boundary: smaller gaps are drawn larger than th
 CLOSED = 1e-9  # of the length of a boundary
 MOST_WAYS = 40  # from points to their partners that are drawn
 FREE = "(free)"
+NO_GROUP, PALE = "#dddddd", 0.35  # of faces of solids: without a name, and what is left of a colour
+HIGH = 0.7  # a panel of a body, for its width
 
 
 def draw_regions(mesh, axis):
@@ -74,13 +78,45 @@ def draw_partners(grids, _, axis):
     axis.set_aspect("auto" if gap < FLAT * np.ptp(x, axis=0).max() else "equal", adjustable="datalim")
 
 
-def contact_panels(grids, which):
+def surface_colours(mesh, surface):
+    """The skin of a solid, colours of its faces by their groups, the smallest last, pale where the
+    surface is free, and handles of a legend."""
+    skin = skin_of(mesh.cells)
+    rows = rows_of(skin, surface.cells)
+    outside, rows = rows >= 0, rows[rows >= 0]
+    colours, handles = np.tile(to_rgb(NO_GROUP), (len(skin.faces), 1)), []
+    groups = {name: values[outside] > 0 for name, values in surface.of_cells.items()}
+    free = groups.pop(FREE)
+    for name, colour in zip(sorted(groups, key=lambda name: -groups[name].sum()), HUES):
+        colours[rows[groups[name]]] = to_rgb(colour)
+        handles.append(Patch(facecolor=colour, label=name))
+    colours[rows[free]] = 1 - PALE * (1 - colours[rows[free]])
+    if free.any():
+        handles.append(Patch(facecolor=NO_GROUP, label="pale: free of conditions and contact"))
+    return skin, colours, handles
+
+
+def draw_surface(points, painted, view, _, axis):
+    skin, colours, handles = painted
+    draw_painted(axis, points, skin, view, colours)
+    legend_below(axis, handles)
+
+
+def surface_panels(mesh, surface):
+    """The groups of the surface of a solid, from two sides."""
+    painted, view = surface_colours(mesh, surface), view_of(np.array([0.0, 0, 1]))
+    return [Drawn(title, partial(draw_surface, mesh.points, painted, seen), ratio=HIGH) for title, seen in
+            (("surface, from above", view), ("from the other side", view_behind(view)))]
+
+
+def contact_panels(grids, which, solid):
     middle = next(iter(grids.values()))
     if middle.cells.shape[1] > 2:
         gaps = {place: grid.of_nodes["gap"] for place, grid in grids.items()}
-        return [Triangles(f"gap of {which}, {PLACES[place][0]}", grid.points[:, :2], grid.cells,
-                          gaps[place], in_length("height above the obstacle"),
-                          (gaps[place].min(), gaps[place].max() + (np.ptp(gaps[place]) == 0)))
+        plan = plan_of(middle.points, middle.cells) if solid else FROM_ABOVE
+        return [Triangles(f"gap of {which}, {PLACES[place][0]}", plan.flat(grid.points), grid.cells, gaps[place],
+                          in_length("gap, overlap below 0" if solid else "height above the obstacle"),
+                          (gaps[place].min(), gaps[place].max() + (np.ptp(gaps[place]) == 0)), axes=plan.names)
                 for place, grid in grids.items()]
     curves = [Curve(wider(grid.points)[0], grid.of_nodes["gap"], *PLACES[place])
               for place, grid in grids.items()]
@@ -108,15 +144,15 @@ def case_panels(path):
     """Panels, and the parameters of the places in the box."""
     mesh, surface = (read_grid(beside(path, name)) for name in ("_mesh", "_surface"))
     contacts = partners(path)
-    panels = [Drawn("mesh and its groups", partial(draw_groups, mesh, surface),
-                    ratio=ratio_of(mesh.points))]
+    panels = surface_panels(mesh, surface) if is_solid(mesh) else [
+        Drawn("mesh and its groups", partial(draw_groups, mesh, surface), ratio=ratio_of(mesh.points))]
     words = {}
     for name, grids in contacts.items():
         which = name if len(contacts) > 1 else "contact"
         if is_closed(grids):
             words[f"{which}, gap"] = "closed everywhere"
         else:
-            panels += contact_panels(grids, which)
+            panels += contact_panels(grids, which, is_solid(mesh))
         for place, grid in grids.items():
             label = PLACES[place][0] if place == "middle" else f"{which}, {PLACES[place][0]}"
             words[label] = parameters_of(grid)

@@ -4,7 +4,8 @@
 Runs `RBVI check CASE -vtu FILE OPTIONS` and draws what that writes, at the middle of the box: the
 bodies in grey, boundaries in contact, what they face, and what holds and loads the bodies. Names and
 expressions are those of the case file without variants and choices, which OPTIONS may have; a
-boundary that the mesh does not have is left out.
+boundary that the mesh does not have is left out. A solid is drawn from two sides, its surface in
+colours.
 """
 
 import subprocess
@@ -27,7 +28,9 @@ from configuration_case import (Bodies, Boundary, boundary_of, values_of, words_
 from configuration_marks import (ARROW, HELD, SPRING, Labels, Mark, draw_held, draw_load, draw_mirrored,
                                  draw_regions, draw_rigid, draw_spring, draw_ticks, filled,
                                  mark_dimensions)
-from figure_tools import BLUE, GREEN, ORANGE, PURPLE, in_length, parameters_of, plt, use_units
+from configuration_solid import read_solid, solid_figure
+from figure_tools import (BLUE, GREEN, ORANGE, PURPLE, in_length, is_solid, parameters_of, plt, read_grid,
+                          use_units)
 from panels import inches_from
 from solution_figures import outline
 
@@ -220,7 +223,9 @@ def figure_of(bodies, case):
 
 def draw(path, case, png):
     use_units(path)
-    figure = figure_of(Bodies(path), case)
+    answer = read_grid(path)
+    figure = (solid_figure(read_solid(path), case, title_of(case, answer)) if is_solid(answer) else
+              figure_of(Bodies(path), case))
     figure.savefig(png, dpi=150, bbox_inches="tight", pad_inches=0.02, pil_kwargs={"optimize": True})
     plt.close(figure)
     print(f"wrote {png}")

@@ -15,6 +15,7 @@ import numpy as np
 
 # Okabe and Ito's palette: told apart with every kind of colour vision, and in grey.
 BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#666666"
+SHADES = "YlGnBu"  # of bodies
 
 COLUMN = 3.46   # inches: of one column of a journal, 88 mm
 WIDTH = 5.2     # at most: of text of 9 points, at the width of a column 6 are left
@@ -135,8 +136,9 @@ def with_unit(name, unit):
 class Grid(NamedTuple):
     """A VTU file. Fields by name: one number each, or rows of three."""
     points: np.ndarray  # n x 3
-    cells: np.ndarray   # m x nodes per cell; a quadratic triangle as four linear ones
-    edges: np.ndarray   # k x 2: of the elements, those of quadratic ones in halves
+    cells: np.ndarray   # m x nodes per cell; a quadratic triangle as four linear ones, of tetrahedra the vertices
+    edges: np.ndarray   # k x 2: of the elements, those of quadratic ones in halves; none of tetrahedra
+    corners: np.ndarray  # vertices of each element
     of_nodes: dict
     of_cells: dict
     of_all: dict        # field data: "mu_radius", ...
@@ -188,9 +190,12 @@ def read_grid(path):
     points = section["Points"]["points"].reshape(-1, 3)
     per_cell = int(section["Cells"]["offsets"][0])
     cells = section["Cells"]["connectivity"].astype(int).reshape(-1, per_cell)
-    edges = unique_edges(cells, per_cell)
-    repeats = 1
-    if per_cell == 6:
+    solid, repeats = per_cell in (4, 10), 1
+    corners = cells[:, :4 if solid else 3]
+    edges = np.zeros((0, 2), int) if solid else unique_edges(cells, per_cell)
+    if solid:
+        cells = corners
+    elif per_cell == 6:
         cells = cells[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
         repeats = 4
     of_nodes = {name: values.reshape(-1, 3) if values.size == 3 * len(points) else values
@@ -198,7 +203,21 @@ def read_grid(path):
     of_cells = {name: np.repeat(values, repeats) for name, values in section["CellData"].items()}
     of_all = section["FieldData"]
     units = dict(line.rsplit(": ", 1) for line in of_all.pop("units"))
-    return Grid(points, cells, edges, of_nodes, of_cells, of_all, units)
+    return Grid(points, cells, edges, corners, of_nodes, of_cells, of_all, units)
+
+
+def is_solid(grid):
+    """Whether a file has tetrahedra."""
+    return grid.corners.shape[1] == 4
+
+
+def von_mises(grid, inside):
+    """Label with what of the stress is drawn, that of the cells inside, and the end of its colours."""
+    stress = grid.of_cells["von_mises"]
+    top = stress[inside].max() if inside.any() else stress.max()
+    where = "inside" if is_solid(grid) else "elsewhere"
+    more = f"; {where} up to {stress.max():.3g}" if stress.max() > 1.005 * top else ""
+    return in_stress("von Mises stress at centres of cells" + more), (0, top or 1)
 
 
 def beside(path, suffix):
@@ -214,12 +233,12 @@ def parameters_of(grid):
                       for name, value, unit in values)
 
 
-def label_plane(axis):
+def label_plane(axis, names="xy"):
     axis.set_aspect("equal")
     axis.grid(False)
     axis.locator_params(nbins=4)
-    axis.set_xlabel(in_length("x"))
-    axis.set_ylabel(in_length("y"))
+    axis.set_xlabel(in_length(names[0]))
+    axis.set_ylabel(in_length(names[1]))
 
 
 def step_values(axis, grid, name, **style):

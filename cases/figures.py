@@ -22,8 +22,8 @@ from compare_figures import compare
 from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, contact_names, free_parameters,
                           history, in_length, in_stress, model_of, plt, table, use_units, wider,
                           with_unit)
-from model_figures import contact_cells, outputs, stresses
-from panels import ROUND_OFF, ZERO, Curve, Lines, Triangles, save_panels
+from model_figures import contact_regions, outputs, stresses
+from panels import ROUND_OFF, ZERO, Curve, Lines, save_panels
 from solution_figures import solution
 
 COLLOCATED = 3  # of law/reduction in model.h5
@@ -150,22 +150,30 @@ def pressure_curves(data, which):
                   least=least)]
 
 
+def region_panels(region, data):
+    """Stresses over an area, and their errors."""
+    panels, pressed = [], data["high_fidelity"] > 0
+    for suffix, what in (("", "pressure"), ("_tangential", "tangential stress")):
+        if "reduced" + suffix not in data.dtype.names or not np.any(data["high_fidelity" + suffix]):
+            continue
+        truth, reduced = data["high_fidelity" + suffix], data["reduced" + suffix]
+        error = reduced - truth
+        bound = np.abs(error[region.rows]).max() or 1
+        panels += [region.panel("reduced, reference domain", reduced, in_stress(what), (0, truth.max() or 1), pressed),
+                   region.panel("error" + of_peak(error, data), error, in_stress("reduced less high-fidelity"),
+                                (-bound, bound), pressed, colours="RdBu_r", least=ZERO * data["high_fidelity"].max())]
+    return panels
+
+
 def pressure_panels(run, data):
-    cells = contact_cells(run)
-    if len(cells) == 0:
+    regions = contact_regions(run, data)
+    if not regions:
         numbers = np.unique(data["interface"]).astype(int)
         names = contact_names(run)
         return [panel for number in numbers for panel in pressure_curves(
             data[data["interface"] == number],
             ", " + names.get(number, f"contact {number}") if len(numbers) > 1 else "")]
-    points = np.column_stack([data["x"], data["y"]])
-    error = data["reduced"] - data["high_fidelity"]
-    bound = np.abs(error).max() or 1
-    return [Triangles("reduced, reference domain", points, cells, data["reduced"],
-                      in_stress("pressure"), (0, data["high_fidelity"].max() or 1)),
-            Triangles("error" + of_peak(error, data), points, cells, error,
-                      in_stress("reduced less high-fidelity"), (-bound, bound), "RdBu_r",
-                      least=ZERO * data["high_fidelity"].max())]
+    return [panel for region in regions for panel in region_panels(region, data)]
 
 
 def pressure(run):
@@ -274,7 +282,9 @@ def mesh_quality_panels(run):
         values = np.sort(data["max_aspect_ratio"][data["training"] == flag])
         curves.append(Curve(np.linspace(0, 100, len(values)), values,
                             f"{label}, {len(values)} parameters", colour, style))
-    return [Lines("worst triangle of the mapped mesh", "share of the parameters, sorted (%)",
+    with h5py.File(model_of(run), "r") as model:
+        cell = "tetrahedron" if model["interfaces/0/points"].shape[1] == 3 else "triangle"
+    return [Lines(f"worst {cell} of the mapped mesh", "share of the parameters, sorted (%)",
                   "largest aspect ratio (-)", curves)]
 
 

@@ -1,6 +1,7 @@
 """What a model answers: outputs along each parameter, stresses over the contacts."""
 
 import re
+from typing import NamedTuple
 
 import h5py
 import numpy as np
@@ -8,9 +9,11 @@ import numpy as np
 from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, contact_names, free_parameters,
                           in_length, in_stress, table, text_rows, wider, with_unit)
 from panels import ROUND_OFF, Banded, Curve, Lines, Triangles, save_panels
+from solid_figures import FROM_ABOVE, Plan, plan_of, zone_of
 
 PLACES = {"middle of the box": BLUE, "least normal force": GREEN, "largest normal force": ORANGE}
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, GREY)
+SPOKEN = {"pressure": "pressure", "tangential": "tangential stress"}  # columns of stresses
 SAME = 0.03  # two outputs that differ by less are drawn once
 MOST = 10  # outputs that are drawn: those of the case before the others
 STANDARD = ("normal_force", "tangential_force", "reaction", "peak_pressure", "contact_measure",
@@ -26,14 +29,64 @@ def drawn_outputs(data, parameters):
     return chosen[:MOST]
 
 
-def contact_cells(run):
-    """Triangles between the vertices of a contact region; nothing for contact along curves."""
+class Region(NamedTuple):
+    """A contact over an area: its rows of a table, a node each, in plan."""
+    name: str           # "" of the only one
+    whole: bool         # whether all of it is drawn: else what is pressed
+    rows: np.ndarray    # of the table
+    owner: np.ndarray   # row of each node of the triangles, of its own rows
+    plan: Plan
+    points: np.ndarray  # n x 2, of the nodes
+    cells: np.ndarray   # k x 3
+
+    def at_nodes(self, values):
+        """Of a column of the table."""
+        return values[self.rows][self.owner]
+
+    def panel(self, title, values, label, limits, pressed, **more):
+        """A field of the table; `pressed`: rows of the table."""
+        frame = None if self.whole else zone_of(self.points, self.at_nodes(pressed))
+        return Triangles(", ".join(filter(None, (title, self.name))), self.points, self.cells, self.at_nodes(values),
+                         label, limits, frame=frame, axes=self.plan.names, **more)
+
+
+def contact_regions(run, data):
+    """The contacts over areas in a table; none where contact is along curves."""
+    names, regions = contact_names(run), []
     with h5py.File(run / "model.h5", "r") as model:
-        dimension, degree, _, nodes = model["interfaces/0/sizes"][()].ravel()
-        of_cells = nodes == (3 if degree == 1 else 6) and dimension == 2
-        region = of_cells and model["interfaces/0/edges"].size == 0
-        cells = model["interfaces/0/entities"][()] if region else np.zeros(0, int)
-        return cells.reshape(-1, nodes)[:, :3]
+        for number in np.unique(data["interface"]).astype(int):
+            mesh = model[f"interfaces/{number - 1}"]
+            _, degree, _, nodes = mesh["sizes"][()].ravel()
+            if nodes != (3 if degree == 1 else 6) or mesh["edges"].size > 0:
+                continue
+            x, cells = mesh["points"][()], mesh["entities"][()].reshape(-1, nodes)[:, :3]
+            solid = x.shape[1] == 3
+            plan = plan_of(x, cells) if solid else FROM_ABOVE
+            rows = np.flatnonzero(data["interface"] == number)
+            own = np.column_stack([data[name][rows] for name in "xyz"[:x.shape[1]]])
+            row_of = {place: k for k, place in enumerate(places_in(own, x))}
+            x = x[:cells.max() + 1]
+            owner = owners(x, cells, np.array([row_of.get(place, -1) for place in places_in(x, x)]))
+            name = names.get(number, f"contact {number}")
+            regions.append(Region(name, not solid, rows, owner, plan, plan.flat(x), cells))
+    return regions if len(regions) > 1 else [region._replace(name="") for region in regions]
+
+
+def places_in(x, points):
+    """Coordinates in parts of the size of the points, to be compared."""
+    return map(tuple, np.round(x / np.ptp(points, axis=0).max(), 9) + 0.0)
+
+
+def owners(x, cells, rows):
+    """Rows of nodes: of those without one, which cannot move, that of the nearest beside them."""
+    sides = cells[:, [[0, 1], [1, 2], [2, 0], [1, 0], [2, 1], [0, 2]]].reshape(-1, 2)
+    sides = sides[np.argsort(-np.linalg.norm(x[sides[:, 0]] - x[sides[:, 1]], axis=1), kind="stable")]
+    while np.any(rows < 0):
+        found = sides[(rows[sides[:, 0]] < 0) & (rows[sides[:, 1]] >= 0)]
+        if len(found) == 0:
+            raise Missing("the places of the table are not nodes of the contact")
+        rows[found[:, 0]] = rows[found[:, 1]]  # the last one is the nearest
+    return rows
 
 
 def output_panels(run):
@@ -111,12 +164,14 @@ def training_pressures(run, rows):
 
 
 def stress_panels(run, rows):
-    """A panel for each contact along a curve; of a region one for each place."""
-    cells, contacts, panels = contact_cells(run), contact_names(run), []
-    if len(cells) > 0:
-        return [Triangles(place, np.column_stack([own["x"], own["y"]]), cells, own["pressure"],
-                          in_stress("pressure"), (0, own["pressure"].max() or 1))
-                for place, own in rows.items()]
+    """A panel for each contact along a curve; of a region one for each place, two with friction."""
+    contacts, panels = contact_names(run), []
+    regions = contact_regions(run, next(iter(rows.values())))
+    if regions:
+        pressed = np.any([own["pressure"] > 0 for own in rows.values()], axis=0)
+        kinds = ["pressure", *(["tangential"] if any(np.any(own["tangential"]) for own in rows.values()) else [])]
+        return [region.panel(place, own[kind], in_stress(SPOKEN[kind]), (0, own[kind].max() or 1), pressed)
+                for region in regions for place, own in rows.items() for kind in kinds]
     training = training_pressures(run, rows)
     for number in np.unique(rows[next(iter(rows))]["interface"]).astype(int):
         curves, over, behind = [], "x", training.get(number, [])

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import MaxNLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 
 from figure_tools import BLUE, COLUMN, GREY, LINE, WIDTH, label_plane, log_axis, plt, save
@@ -130,6 +130,8 @@ class Triangles:
     flat: bool = False
     least: float = 0
     frame: tuple = None  # corners of what is shown, where that is not all
+    axes: tuple = ("x", "y")
+    over: Callable = None  # draws on an axis what lies over the colours; handles of a legend
     projection = None
 
     @property
@@ -145,12 +147,18 @@ class Triangles:
                                 *(() if self.flat else (self.values,)), cmap=self.colours,
                                 rasterized=True, **shading)
         filled.set_clim(*self.limits)
-        label_plane(axis)
+        label_plane(axis, self.axes)
+        if self.frame is not None:
+            (left, low), (right, high) = self.frame
+            axis.set(xlim=(left, right), ylim=(low, high))
         if self.ratio > 1.1:
             axis.locator_params(axis="x", nbins=2)
         if self.ratio < 0.6:
             axis.yaxis.set_major_locator(MaxNLocator(2, min_n_ticks=1))
         colour_bar(figure, axis, filled, self.label, self.ratio)
+        handles = self.over(axis) if self.over else []
+        if handles:
+            legend_below(axis, handles)
 
 
 @dataclass
@@ -188,6 +196,7 @@ def decades(axis):
     low, high = axis.dataLim.intervalx
     axis.set_xscale("log")
     axis.set_xlim(10 ** np.floor(np.log10(low) - 0.1), 10 ** np.ceil(np.log10(high) + 0.1))
+    axis.xaxis.set_minor_formatter(NullFormatter())
 
 
 def ratio_of(points):
@@ -201,15 +210,15 @@ def inches_from(axis):
     return axis.figure.dpi_scale_trans + ScaledTranslation(0, 0, axis.transAxes)
 
 
-def colour_bar(figure, axis, filled, label, ratio):
-    """Below what is wide, at the right of what is high."""
+def colour_bar(figure, axis, filled, label, ratio, start=0):
+    """Below what is wide, `start` inches from its left, at the right of what is high."""
     below = ratio < 1.3
-    place = (axis.inset_axes((0, -0.62, 1.5, 0.09), transform=inches_from(axis)) if below else
+    place = (axis.inset_axes((start, -0.62, 1.5, 0.09), transform=inches_from(axis)) if below else
              axis.inset_axes((1.08, 0.05, 0.1, 0.9)))
     bar = figure.colorbar(filled, cax=place, orientation="horizontal" if below else "vertical", format="%.3g")
     bar.locator = MaxNLocator(3 if below else 4)
     bar.update_ticks()
-    bar.set_label(fitting(label, 34 if below else 26))
+    bar.set_label(fitting(label, 24))
     place.grid(False)
 
 

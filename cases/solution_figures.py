@@ -6,11 +6,12 @@ from functools import partial
 import numpy as np
 from matplotlib.patches import Rectangle
 
-from figure_tools import (GREEN, ORANGE, PURPLE, UNITS, Missing, in_length, in_stress, parameters_of, read_grid,
-                          wider)
+from figure_tools import (GREEN, ORANGE, PURPLE, SHADES, UNITS, Missing, in_length, in_stress, is_solid,
+                          parameters_of, read_grid, von_mises, wider)
 from panels import Curve, Drawn, Lines, Triangles, legend_below, ratio_of, save_panels
+from solid_figures import round_length
+from solid_solution import solid_panels
 
-SHADES = "YlGnBu"
 WIDTHS = 5  # of the edges of a mesh; those that round to zero are left out
 CLOSED = 1e-9  # of the largest displacement: a smaller gap is closed
 VISIBLE = 0.05  # of the size of the bodies: displacements are drawn no smaller
@@ -89,12 +90,9 @@ def scale_of(grid, contacts):
     """What displacements are multiplied by where they are drawn: 1 where they can be seen, else 1, 2 or 5
     times a power of ten, so that bodies with a gap at rest do not overlap."""
     size, largest = np.ptp(grid.points, axis=0).max(), np.linalg.norm(grid.of_nodes["u"], axis=1).max()
-    wanted = min([VISIBLE * size / (largest or size), *(1 + 0.01 * size / max(gap_at_rest(grid, curve), 1e-9 * size)
-                                            for curve in contacts.values())])
-    if wanted < 2:
-        return 1
-    power = 10.0 ** np.floor(np.log10(wanted))
-    return int(power * max(lead for lead in (1, 2, 5) if lead * power <= wanted))
+    gaps = [] if is_solid(grid) else [gap_at_rest(grid, curve) for curve in contacts.values()]
+    wanted = min([VISIBLE * size / (largest or size), *(1 + 0.01 * size / max(gap, 1e-9 * size) for gap in gaps)])
+    return 1 if wanted < 2 else int(round_length(wanted))
 
 
 def positions_of(grid, scale):
@@ -135,14 +133,6 @@ def draw_rigid(grid, contacts, scale, axis):
     lines = [axis.plot(*faced(curve, scale).T, color=ORANGE, linewidth=1.8, label="rigid surface")[0]
              for curve in contacts.values() if len(partners_of(grid, curve)) == 0]
     return lines[:1]
-
-
-def von_mises(grid, inside):
-    """Label with what of the stress is drawn, and the end of its colours."""
-    stress = grid.of_cells["von_mises"]
-    top = stress[inside].max() if inside.any() else stress.max()
-    more = f"; elsewhere up to {stress.max():.3g}" if stress.max() > 1.005 * top else ""
-    return in_stress("von Mises stress at centres of cells" + more), (0, top or 1)
 
 
 def draw_deformed(frames, contacts, scale, grid, figure, axis):
@@ -212,8 +202,6 @@ def draw_zoom(frame, curve, scale, grid, figure, axis):
               frame=frame).draw(figure, axis)
     draw_mesh(axis, positions, grid, 2 * (high - low).max())
     draw_rigid(grid, {"": curve}, scale, axis)
-    axis.set_xlim(low[0], high[0])
-    axis.set_ylim(low[1], high[1])
 
 
 def along(grid, name):
@@ -260,6 +248,9 @@ def body_panels(grid, contacts):
 def solution_panels(path):
     grid = read_grid(path)
     contacts = contact_grids(path, grid)
+    if is_solid(grid):
+        scale = scale_of(grid, contacts)
+        return solid_panels(grid, contacts, scale, title_of(grid, scale))
     return (body_panels if grid.of_nodes["u"].ndim == 2 else membrane_panels)(grid, contacts)
 
 

@@ -82,6 +82,9 @@ def problems(figure, units):
     boxes = [Text.get_window_extent(text, renderer) for text in texts]
     found += [f"{texts[i].get_text()!r} lies over {texts[j].get_text()!r}"
               for i, j in combinations(range(len(texts)), 2) if overlaps(boxes[i], boxes[j])]
+    whole = figure.get_tightbbox(renderer)
+    found += [f"{texts[k].get_text()!r} is cut" for k, box in enumerate(boxes)
+              if box.x0 < figure.dpi * whole.x0 - TOUCH or box.x1 > figure.dpi * whole.x1 + TOUCH]
     found += [f"axes without data: {axis.get_title(loc='left')!r}" for axis in figure.axes if not has_data(axis)]
     return found + [f"no unit: {label!r}" for axis in figure.axes for label in wrong_units(axis) if units]
 

@@ -7,7 +7,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_constants, draw_greedy,
                           draw_tolerances, end_tolerances, history, log_axis, plt, save, table)
-from figures import contact_cells, mesh_quality_panels
+from figures import contact_regions, mesh_quality_panels
 from panels import Triangles, save_panels
 
 import numpy as np
@@ -152,13 +152,13 @@ def pressures(runs, directory):
     figure, axes = plt.subplots(2, 3, figsize=(12, 6.4), constrained_layout=True)
     for row, name in zip(axes, ("mcpg", "hybrid")):
         run = runs["similarity", name, "offline"]
-        data, cells = table(run, "worst_pressure.csv"), contact_cells(run)
-        points = np.column_stack([data["x"], data["y"]])
+        data = table(run, "worst_pressure.csv")
+        (region,) = contact_regions(run, data)
         error = data["reduced"] - data["high_fidelity"]
         top, bound = data["high_fidelity"].max(), np.abs(error).max()
-        panels = [Triangles(f"{name}: {column.replace('_', '-')}", points, cells, data[column],
-                            "pressure (Pa)", (0, top)) for column in ("high_fidelity", "reduced")]
-        panels.append(Triangles(f"{name}: error", points, cells, error,
+        panels = [Triangles(f"{name}: {column.replace('_', '-')}", region.points, region.cells,
+                            region.at_nodes(data[column]), "pressure (Pa)", (0, top)) for column in ("high_fidelity", "reduced")]
+        panels.append(Triangles(f"{name}: error", region.points, region.cells, region.at_nodes(error),
                                 "error of the pressure (Pa)", (-bound, bound), "RdBu_r"))
         for axis, panel in zip(row, panels):
             panel.draw(figure, axis)
