@@ -9,7 +9,7 @@ from figure_tools import UNITS
 
 FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])  # of a tetrahedron, anticlockwise from outside
 VIEWS = [(azimuth, elevation) for elevation in (35, -35) for azimuth in (-60, 30, 120, -150)]  # degrees
-SHARP = np.cos(np.radians(30))  # edges where the skin turns by more are drawn
+SHARP = np.cos(np.radians(40))  # edges where the skin turns by more are drawn
 ALIGNED = 0.95  # a normal that is nearer to an axis is seen along it
 ARM = 0.2  # of the size of a picture: the axes that are drawn beside it
 ARROW = {"arrowstyle": "-|>,head_width=0.12,head_length=0.25", "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0,
@@ -157,7 +157,7 @@ def draw_axes(axis, view, drawn, size):
     ways = view.flat(arm * np.eye(3))
     least, most = (end(1.4 * ways, axis=0) for end in (np.min, np.max))
     wide = np.ptp(drawn, axis=0).max()
-    margin, line = 0.04 * wide, 0.12 * wide
+    margin, line = 0.04 * wide, 0.16 * wide
     room = most - least + (2 * margin, margin + line)
     corner = place_of_axes(drawn, room)
     start = corner - least + (margin, line)

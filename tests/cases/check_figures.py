@@ -18,10 +18,11 @@ sys.path[:0] = [str(ROOT / "cases"), str(ROOT / "tests/docs"), str(ROOT / "tests
 
 import figures
 from case_figures import case_panels
-from figure_tools import plt, read_grid, table
+from figure_tools import is_solid, plt, read_grid, table
 from model_figures import drawn_outputs, output_panels, places_of, stress_panels
 from panels import Lines, Triangles, figure_of, shown, with_values
 from small_runs import CHECKED, RUNS
+from solid_figures import seen, skin_of, view_of
 from solution_figures import contact_grids, solution_panels
 
 # Of the force. Nitsche's method has stresses at the ends of edges alone, which do not integrate the
@@ -30,7 +31,7 @@ FORCE_TOLERANCE = {"multipliers": 1e-3, "nitsche": 0.05}
 
 
 # Files of partners: the obstacle moves with its membrane, and the second plate of the roller is fixed.
-PLACES = {"membrane_obstacle": 1, "two_disks": 3, "roller": 4}
+PLACES = {"membrane_obstacle": 1, "two_disks": 3, "roller": 4, "rigid_ball": 3}
 
 
 class Checks:
@@ -114,6 +115,13 @@ def force_on_region(panel):
     return area @ panel.values[panel.cells].mean(axis=1)
 
 
+def force_on_surface(panel, grid):
+    """Integral of the pressure of a panel over a contact surface in space."""
+    x = grid.points[panel.cells]
+    area = np.linalg.norm(np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]), axis=1) / 2
+    return area @ panel.values[panel.cells].mean(axis=1)
+
+
 def check_partners(check, grid, name):
     """The way from a node to its partner has the gap along the normal."""
     along = np.sum(grid.of_nodes["to_partner"] * grid.of_nodes["normal"], axis=1)
@@ -135,6 +143,18 @@ def check_case(check, path):
     check.that(np.any(free > 0) == (name != "membrane_obstacle"), f"{name}: what is free")
 
 
+def check_skin(check, grid, name):
+    """The outer faces of tetrahedra enclose them, with normals to the outside."""
+    skin, x = skin_of(grid.cells), grid.points
+    of_cells = np.linalg.det(x[grid.cells[:, 1:]] - x[grid.cells[:, :1]]).sum() / 6
+    enclosed = np.linalg.det(x[skin.faces]).sum() / 6
+    check.that(abs(enclosed - of_cells) < 1e-9 * of_cells, f"{name}: the skin encloses {enclosed}, not {of_cells}")
+    view = view_of(np.array([0.0, 0, 1]))
+    front = skin.normals(x) @ view.towards > 0
+    shown = seen(x[skin.faces].mean(axis=1), x, skin, view, np.ptp(x, axis=0).max())
+    check.that(np.mean(shown[front]) > 0.9 and not np.any(shown[~front]), f"{name}: what is seen of a half-ball")
+
+
 def check_answer(check, run):
     """Pressures that are drawn, over all interfaces, have the normal force of the answer as their
     integral; gaps are closed below them."""
@@ -145,6 +165,9 @@ def check_answer(check, run):
     expected = float(answer["normal_force"])
     if grid.of_nodes["u"].ndim == 1:
         force = force_on_region(panels[1])
+    elif is_solid(grid):
+        force = force_on_surface(panels[1], contact_grids(run / "u.vtu", grid)["support"])
+        check_skin(check, grid, run.name)
     else:
         contacts = contact_grids(run / "u.vtu", grid)
         lines = [panel for panel in panels if isinstance(panel, Lines)]
@@ -177,6 +200,7 @@ def check_errors(check, run):
     check_panels(check, panels, f"{run.name}, pressure")
     if isinstance(panels[0], Triangles):
         shown_errors = [panels[1].values]
+        check.that(len(panels) == (4 if run.name == "solid" else 2), f"{run.name}: {len(panels)} panels of stresses")
     else:
         check.that(len(panels) == 2 * len(np.unique(worst["interface"])),
                    f"{run.name}: an interface has no pressure")

@@ -11,18 +11,19 @@ from itertools import combinations
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "cases"))
+sys.path[:0] = [str(ROOT / "cases"), str(ROOT / "tests/docs")]
 
 import figure_tools
 import figures
 from matplotlib.text import Text
 from figure_tools import tree_of
+from small_runs import CHECKED, HAS_SOLIDS
 
 COLUMN = 88 / 25.4  # inches
 LEAST = 6           # points
 TOUCH = 1           # pixels that boxes of letters may share
-RUNS = ("membrane", "two_disks", "disk_condensed", "disk_large_cone", "nitsche_interpolated", "roller")
-CHECKED = ("membrane_obstacle", "two_disks", "roller")
+RUNS = ("membrane", "two_disks", "disk_condensed", "disk_large_cone", "nitsche_interpolated", "roller",
+        *(["solid"] if HAS_SOLIDS else []))
 COUNTS = ("number", "part of the range", "modes", "functions", "nodes", "points", "terms", "supremizers",
           "contact measure")
 
@@ -30,7 +31,7 @@ COUNTS = ("number", "part of the range", "modes", "functions", "nodes", "points"
 def tick_texts(axis):
     """Labels of ticks that are drawn, and all that can be."""
     drawn, all_of = [], []
-    for line in (axis.xaxis, axis.yaxis):
+    for line in (axis.xaxis, axis.yaxis, *([axis.zaxis] if axis.name == "3d" else [])):
         low, high = sorted(line.get_view_interval())
         margin = 1e-9 * abs(low)
         for tick in line.get_major_ticks() + line.get_minor_ticks():

@@ -5,7 +5,8 @@ and vtu.
 Each run OUT/NAME is made, asked and verified, some are measured: model.h5, samples, every table of
 rbvi, online_before.csv and online_after.csv (rbvi-online before and after rbvi verify), solve.csv,
 u.vtu of that solve and online.vtu of rbvi-online at the same mu. OUT/answers/NAME has solve.csv and
-u.vtu of every scene and formulation, OUT/checks/NAME what rbvi check draws of some cases.
+u.vtu of every scene and formulation, OUT/checks/NAME what rbvi check draws of some cases. Solids are
+there where gmsh is, which meshes them.
 """
 
 import shutil
@@ -45,8 +46,13 @@ RUNS = {
     "roller_nitsche": ["-case", CASES / "roller/case.yaml", "-train", "grid:3,3", "-arc_edges", "24",
                        "-formulation", "nitsche"],
 }
-MEASURED = ("two_disks", "nitsche_empirical")  # by rbvi bench, which takes longest
+COARSE = {"rigid_ball": ["-set", "mesh.set.size=3"]}  # options of rbvi check
 CHECKED = ("membrane_obstacle", "two_disks", "roller")
+HAS_SOLIDS = shutil.which("gmsh") is not None
+if HAS_SOLIDS:
+    RUNS["solid"] = ["-case", CASES / "rigid_ball/case.yaml", *COARSE["rigid_ball"], "-train", "grid:3,3"]
+    CHECKED += ("rigid_ball",)
+MEASURED = ("two_disks", "nitsche_empirical")  # by rbvi bench, which takes longest
 GROWN = "disk_none"  # by rbvi bench -bench_growth
 
 
@@ -80,7 +86,7 @@ def answer(rbvi, out, options, mu):
 
 def check(rbvi, out, case):
     out.mkdir(parents=True)
-    call(rbvi, "check", case, "-vtu", out / "u.vtu")
+    call(rbvi, "check", case, "-vtu", out / "u.vtu", *COARSE.get(case.name, []))
 
 
 def main(binaries, out):
