@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from figure_tools import (BLUE, GREEN, ORANGE, PURPLE, beside, in_length, is_solid, label_plane,
                           parameters_of, plt, read_grid, wider)
-from panels import Curve, Drawn, Lines, Triangles, legend_below, ratio_of, save_panels
+from panels import ROUND_OFF, Curve, Drawn, Lines, Triangles, legend_below, ratio_of, save_panels
 from solid_figures import FROM_ABOVE, draw_painted, plan_of, rows_of, skin_of, view_behind, view_of
 
 # Places in the box by the names of their files.
@@ -116,13 +116,20 @@ def contact_panels(grids, which, solid):
         plan = plan_of(middle.points, middle.cells) if solid else FROM_ABOVE
         return [Triangles(f"gap of {which}, {PLACES[place][0]}", plan.flat(grid.points), grid.cells, gaps[place],
                           in_length("gap, overlap below 0" if solid else "height above the obstacle"),
-                          (gaps[place].min(), gaps[place].max() + (np.ptp(gaps[place]) == 0)), axes=plan.names)
+                          limits_of(gaps[place]), axes=plan.names)
                 for place, grid in grids.items()]
     curves = [Curve(wider(grid.points)[0], grid.of_nodes["gap"], *PLACES[place])
               for place, grid in grids.items()]
     return [Drawn(f"what {which} faces", partial(draw_partners, grids), ratio=0.75),
             Lines(f"gap along {which}", in_length(wider(middle.points)[1]),
                   in_length("gap, overlap below 0"), curves)]
+
+
+def limits_of(values):
+    """Of colours; those of a constant with round-off are around it."""
+    low, high = values.min(), values.max()
+    size = max(abs(low), abs(high))
+    return (low, high) if high - low > ROUND_OFF * size else (low - (0.1 * size or 1), high + (0.1 * size or 1))
 
 
 def is_closed(grids):

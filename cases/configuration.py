@@ -240,8 +240,10 @@ def main(arguments):
     case = {"name": file.resolve().parent.name, **yaml.safe_load(file.read_text(encoding="utf-8"))}
     with tempfile.TemporaryDirectory() as scratch:
         path = Path(scratch) / "u.vtu"
-        subprocess.run([rbvi, "check", folder, "-vtu", str(path), *options], check=True,
-                       stdout=subprocess.DEVNULL)
+        done = subprocess.run([rbvi, "check", folder, "-vtu", str(path), *options], check=False,
+                              stdout=subprocess.DEVNULL)
+        if done.returncode != 0:
+            return done.returncode  # rbvi says why
         draw(path, case, png)
     return 0
 

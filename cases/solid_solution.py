@@ -14,7 +14,6 @@ ARROWS = 12   # along each side of a plan, at most
 LONGEST = 0.13  # of the size of a plan
 BOUND = 1e-4  # of the largest: tangential stresses nearer to it are at the bound of friction
 STILL = 1e-12  # of the size of a surface: what slips less is held
-HIGH = 1.6  # a panel, for its width: with a bar of colours below
 EDGE = {"colors": ORANGE, "linewidths": 1.6}
 RIM = {"colors": "black", "linewidths": 0.9, "linestyles": (0, (4, 2))}
 LINES = (Line2D([], [], color=ORANGE, linewidth=1.6, label="edge of contact"),
@@ -120,5 +119,6 @@ def draw_body(grid, contacts, scale, view, figure, axis):
 
 def solid_panels(grid, contacts, scale, title):
     view = view_of(facing_of(contacts))
-    return [Drawn(title, partial(draw_body, grid, contacts, scale, view), ratio=HIGH),
-            *(contact_panel(surface, name if len(contacts) > 1 else "") for name, surface in contacts.items())]
+    plans = [contact_panel(surface, name if len(contacts) > 1 else "") for name, surface in contacts.items()]
+    ratio = max([0.5, *(plan.ratio for plan in plans[:1])])  # of the plan beside it, with its bar of colours
+    return [Drawn(title, partial(draw_body, grid, contacts, scale, view), ratio=0.55 + 1.3 * ratio), *plans]
