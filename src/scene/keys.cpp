@@ -142,9 +142,8 @@ const std::vector<CaseKey> all_keys{
      false, "m"},
     {"contact.*", "against", "boundary or table", "another body, or something rigid"},
     {"contact.*", "normal", "auto | body | rigid | deformed",
-     "of contact: of the body at rest, of what is rigid at the next point, of the deformed body; "
-     "auto: body with small kinematics of a circle that the map does not turn or stretch against a "
-     "disk, else rigid"},
+     "that of the body at rest, of what is rigid, of the deformed body; auto: rigid, but body where a "
+     "round one at rest meets a disk, sphere or cylinder"},
     {"contact.*", "gap", "closest | ray | vertical",
      "small kinematics: along the normal to the next point, along a ray, to the point below"},
     {"contact.*", "gap_from", "curve | edges",
