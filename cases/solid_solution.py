@@ -120,5 +120,6 @@ def draw_body(grid, contacts, scale, view, figure, axis):
 def solid_panels(grid, contacts, scale, title):
     view = view_of(facing_of(contacts))
     plans = [contact_panel(surface, name if len(contacts) > 1 else "") for name, surface in contacts.items()]
-    ratio = max([0.5, *(plan.ratio for plan in plans[:1])])  # of the plan beside it, with its bar of colours
-    return [Drawn(title, partial(draw_body, grid, contacts, scale, view), ratio=0.55 + 1.3 * ratio), *plans]
+    beside = max([0.5, *(plan.ratio for plan in plans[:1])])  # a plan, with its bar of colours
+    ratio = 1.3 * beside + (0.5 if len(plans) > 1 else 0.3)
+    return [Drawn(title, partial(draw_body, grid, contacts, scale, view), ratio=ratio), *plans]
