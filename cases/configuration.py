@@ -22,13 +22,14 @@ except ImportError:
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from PIL import Image
 
 from configuration_case import (Bodies, Boundary, boundary_of, values_of, words_of_contact,
                                 words_of_imposed, words_of_load)
 from configuration_marks import (ARROW, HELD, SPRING, Labels, Mark, draw_held, draw_load, draw_mirrored,
                                  draw_regions, draw_rigid, draw_spring, draw_ticks, filled,
                                  mark_dimensions)
-from configuration_solid import read_solid, solid_figure
+from configuration_solid import Solid, read_solid, solid_figure
 from figure_tools import (BLUE, GREEN, ORANGE, PURPLE, in_length, is_solid, parameters_of, plt, read_grid,
                           use_units)
 from panels import inches_from
@@ -38,6 +39,7 @@ CONTACT = (BLUE, GREEN, PURPLE)
 LOADS = (ORANGE, "#B8860B", "#8B1A1A")
 CONTACT_AREA = "#9cc7e4"
 BODY = 4.8  # inches: width of the picture of bodies
+COLOURS = 256  # of a picture
 THIN = 0.03  # of the size of the bodies: a thinner one is shown beside them, larger
 
 
@@ -218,16 +220,21 @@ def draw_cut(axis, bodies, grid):
 
 
 def figure_of(bodies, case):
+    if isinstance(bodies, Solid):
+        return solid_figure(bodies, case, title_of(case, bodies.answer))
     return (body_figure if bodies.planar else membrane_figure)(bodies, case)
+
+
+def read_bodies(path):
+    return (read_solid if is_solid(read_grid(path)) else Bodies)(path)
 
 
 def draw(path, case, png):
     use_units(path)
-    answer = read_grid(path)
-    figure = (solid_figure(read_solid(path), case, title_of(case, answer)) if is_solid(answer) else
-              figure_of(Bodies(path), case))
-    figure.savefig(png, dpi=150, bbox_inches="tight", pad_inches=0.02, pil_kwargs={"optimize": True})
+    figure = figure_of(read_bodies(path), case)
+    figure.savefig(png, dpi=150, bbox_inches="tight", pad_inches=0.02)
     plt.close(figure)
+    Image.open(png).convert("RGB").quantize(COLOURS).save(png, optimize=True)
     print(f"wrote {png}")
 
 

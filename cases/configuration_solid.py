@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 
 from case_figures import FREE
 from configuration_case import words_of_contact, words_of_imposed, words_of_load
-from figure_tools import beside, plt, read_grid
+from figure_tools import Grid, beside, plt, read_grid
 from solid_figures import Skin, draw_painted, rows_of, skin_of, view_behind, view_of
 
 CONTACT = ("#0072B2", "#56B4E9", "#009E73")
@@ -22,6 +22,7 @@ WIDTH = 4.8  # inches
 
 class Solid(NamedTuple):
     """A solid at the middle of the box, and rows of its skin by the names of its surfaces."""
+    answer: Grid
     points: np.ndarray
     skin: Skin
     groups: dict
@@ -33,7 +34,8 @@ def read_solid(path):
     skin = skin_of(mesh.cells)
     rows = rows_of(skin, surface.cells)
     groups = {name: rows[(values > 0) & (rows >= 0)] for name, values in surface.of_cells.items() if name != FREE}
-    return Solid(read_grid(path).points[:len(mesh.points)], skin, groups)
+    answer = read_grid(path)
+    return Solid(answer, answer.points[:len(mesh.points)], skin, groups)
 
 
 def conditions_of(case):

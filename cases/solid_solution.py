@@ -32,7 +32,7 @@ def is_slipping(pressure, sizes, slips):
     reach it, and move."""
     for bound in (pressure, np.ones(len(sizes))):
         share = np.divide(sizes, bound, out=np.zeros(len(sizes)), where=pressure > 0)
-        at_bound = slips & (share > (1 - BOUND) * share.max())
+        at_bound = slips & (share > (1 - BOUND) * share.max(initial=0))
         if at_bound.sum() > 1:
             return at_bound
     return np.zeros(len(sizes), bool)
@@ -46,21 +46,25 @@ def thinned(nodes, x, step):
     return nodes[order[np.unique(squares[order], axis=0, return_index=True)[1]]]
 
 
-def draw_tractions(surface, plan, size, axis):
-    """Arrows at nodes in contact; handles of a legend."""
+def tangential_of(surface):
+    """Vertices in contact that slip, those that stick, and the tangential stress at nodes."""
     tractions = surface.of_nodes.get("tangential_stress", np.zeros((len(surface.points), 3)))
     sizes, pressure = np.linalg.norm(tractions, axis=1), surface.of_nodes["pressure"]
     vertices = np.unique(surface.corners)
     vertices = vertices[(sizes[vertices] > 0) & (pressure[vertices] > 0)]
-    if len(vertices) == 0:
-        return []
-    moves = np.linalg.norm(surface.of_nodes["slip"], axis=1)
-    slipping = is_slipping(pressure[vertices], sizes[vertices], moves[vertices] > STILL * np.ptp(surface.points))
+    moves = np.linalg.norm(surface.of_nodes["slip"], axis=1)[vertices] > STILL * np.ptp(surface.points)
+    slipping = is_slipping(pressure[vertices], sizes[vertices], moves)
+    return vertices[slipping], vertices[~slipping], tractions
+
+
+def draw_tractions(surface, plan, size, axis):
+    """Arrows at nodes in contact; handles of a legend."""
+    slipping, sticking, tractions = tangential_of(surface)
     x, ways = plan.flat(surface.points), plan.flat(tractions)
-    longest = sizes[vertices].max()
+    longest = np.linalg.norm(tractions, axis=1).max()
     said, handles = f"tangential stress, the longest {longest:.3g} {UNITS['stress']}", []
-    for some, what, colour, marker in ((slipping, "slips", PURPLE, ">"), (~slipping, "sticks", GREEN, "o")):
-        nodes = thinned(vertices[some], x, size / ARROWS)
+    for some, what, colour, marker in ((slipping, "slips", PURPLE, ">"), (sticking, "sticks", GREEN, "o")):
+        nodes = thinned(some, x, size / ARROWS)
         if len(nodes) == 0:
             continue
         axis.quiver(*x[nodes].T, *ways[nodes].T, angles="xy", scale_units="xy", units="inches", width=0.022, zorder=4,

@@ -16,16 +16,20 @@ try:
 except ImportError:
     sys.exit(77)
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "docs"))
+
+from small_runs import COARSE
+
 LARGEST = 120_000  # bytes
 
 
 def drawn(configuration, rbvi, folder, case):
     with tempfile.TemporaryDirectory() as scratch:
         path = Path(scratch) / "u.vtu"
-        subprocess.run([rbvi, "check", str(folder), "-vtu", str(path)], check=True,
+        subprocess.run([rbvi, "check", str(folder), "-vtu", str(path), *COARSE.get(folder.name, [])], check=True,
                        stdout=subprocess.DEVNULL)
         configuration.use_units(path)
-        bodies = configuration.Bodies(path)
+        bodies = configuration.read_bodies(path)
         return bodies, configuration.figure_of(bodies, case)
 
 
@@ -36,6 +40,23 @@ def expected(bodies, case):
         names |= {name for name, what in case.get(kind, {}).items()
                   if "force" not in what and bodies.boundary(what["at"]) is not None}
     return names
+
+
+def wrong_with_solid(solid, figure, case, picture):
+    """Each of its conditions has a line in the legend, each of its surfaces faces."""
+    (legend,) = figure.legends
+    lines = [text.get_text().replace("\n", " ") for text in legend.get_texts()]
+    names = [*case["contact"], *case.get("imposed", {}), *case.get("loads", {})]
+    wrong = [f"'{name}' is not in the legend" for name in names if sum(f"{name}: " in line for line in lines) != 1]
+    if any(len(solid.groups[name]) == 0 for name in solid.groups):
+        wrong.append("a surface has no faces")
+    return wrong + wrong_size(picture)
+
+
+def wrong_size(picture):
+    if picture.is_file() and picture.stat().st_size <= LARGEST:
+        return []
+    return [f"{picture.name} is missing or larger than {LARGEST} bytes"]
 
 
 def wrong_with(bodies, figure, case, picture):
@@ -50,9 +71,7 @@ def wrong_with(bodies, figure, case, picture):
         if not axis.get_xlabel().endswith(")"):
             wrong.append(f"no unit in '{axis.get_xlabel()}'")
     wrong += [f"'{name}' is not in the picture" for name in expected(bodies, case) - found]
-    if not picture.is_file() or picture.stat().st_size > LARGEST:
-        wrong.append(f"{picture.name} is missing or larger than {LARGEST} bytes")
-    return wrong
+    return wrong + wrong_size(picture)
 
 
 def main(rbvi, root, names):
@@ -61,9 +80,10 @@ def main(rbvi, root, names):
     folders = [root / "cases" / name for name in names]
     status = 0
     for folder in folders:
-        case = yaml.safe_load((folder / "case.yaml").read_text(encoding="utf-8"))
+        case = {"name": folder.name, **yaml.safe_load((folder / "case.yaml").read_text(encoding="utf-8"))}
         bodies, figure = drawn(configuration, rbvi, folder, case)
-        for line in wrong_with(bodies, figure, case, folder / "configuration.png"):
+        wrong = wrong_with_solid if case["physics"] == "solid" else wrong_with
+        for line in wrong(bodies, figure, case, folder / "configuration.png"):
             print(f"{folder.name}: {line}")
             status = 1
         configuration.plt.close(figure)

@@ -23,6 +23,7 @@ from model_figures import drawn_outputs, output_panels, places_of, stress_panels
 from panels import Lines, Triangles, figure_of, shown, with_values
 from small_runs import CHECKED, RUNS
 from solid_figures import seen, skin_of, view_of
+from solid_solution import tangential_of
 from solution_figures import contact_grids, solution_panels
 
 # Of the force. Nitsche's method has stresses at the ends of edges alone, which do not integrate the
@@ -166,7 +167,11 @@ def check_answer(check, run):
     if grid.of_nodes["u"].ndim == 1:
         force = force_on_region(panels[1])
     elif is_solid(grid):
-        force = force_on_surface(panels[1], contact_grids(run / "u.vtu", grid)["support"])
+        surface = contact_grids(run / "u.vtu", grid)["support"]
+        force = force_on_surface(panels[1], surface)
+        counts = [int(answer[name]) for name in ("contact_nodes", "stick_nodes")]
+        slipping, sticking, _ = tangential_of(surface)
+        check.that([len(slipping) + len(sticking), len(sticking)] == counts, f"{run.name}: nodes are not {counts}")
         check_skin(check, grid, run.name)
     else:
         contacts = contact_grids(run / "u.vtu", grid)
