@@ -5,7 +5,7 @@ Runs `RBVI check CASE -vtu FILE OPTIONS` and draws what that writes, at the midd
 bodies in grey, boundaries in contact, what they face, and what holds and loads the bodies. Names and
 expressions are those of the case file without variants and choices, which OPTIONS may have; a
 boundary that the mesh does not have is left out. A solid is drawn from two sides, its surface in
-colours.
+colours; what is not drawn of it is told.
 """
 
 import subprocess
@@ -29,7 +29,7 @@ from configuration_case import (Bodies, Boundary, boundary_of, values_of, words_
 from configuration_marks import (ARROW, HELD, SPRING, Labels, Mark, draw_held, draw_load, draw_mirrored,
                                  draw_regions, draw_rigid, draw_spring, draw_ticks, filled,
                                  mark_dimensions)
-from configuration_solid import Solid, read_solid, solid_figure
+from configuration_solid import Solid, not_drawn, read_solid, solid_figure
 from figure_tools import (BLUE, GREEN, ORANGE, PURPLE, in_length, is_solid, parameters_of, plt, read_grid,
                           use_units)
 from panels import inches_from
@@ -231,10 +231,13 @@ def read_bodies(path):
 
 def draw(path, case, png):
     use_units(path)
-    figure = figure_of(read_bodies(path), case)
+    bodies = read_bodies(path)
+    figure = figure_of(bodies, case)
     figure.savefig(png, dpi=150, bbox_inches="tight", pad_inches=0.02)
     plt.close(figure)
     Image.open(png).convert("RGB").quantize(COLOURS).save(png, optimize=True)
+    if isinstance(bodies, Solid) and not_drawn(case):
+        print(f"not drawn: {', '.join(not_drawn(case))}")
     print(f"wrote {png}")
 
 

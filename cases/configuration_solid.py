@@ -52,6 +52,13 @@ def conditions_of(case):
     return found
 
 
+def not_drawn(case):
+    """What a solid has and its picture does not show, in words."""
+    words = [f"spring {name}" for name in case.get("springs", {})]
+    words += [f"load {name}" for name, load in case.get("loads", {}).items() if "force" in load]
+    return words + ["what planes of symmetry mirror"] * ("mirror" in case)
+
+
 def painted(solid, case):
     """Colours of the skin, k x 3, and handles of a legend."""
     colours, handles = np.tile(to_rgb(FREE_FACES), (len(solid.skin.faces), 1)), []
