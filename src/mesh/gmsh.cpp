@@ -132,11 +132,16 @@ private:
   std::vector<int> index_;
 };
 
-void check_dimension(const GmshFile &file, const Scene &scene) {
+int dimension_of(const GmshFile &file) {
   int dim = 0;
   for (const GmshElement &element : file.elements)
     dim = std::max(dim, element.dim);
-  if (dim == 0) throw bad_input("holds no cells");
+  if (dim < 2) throw bad_input("holds no cells");
+  return dim;
+}
+
+void check_dimension(const GmshFile &file, const Scene &scene) {
+  const int dim = dimension_of(file);
   if (dim != scene.dim)
     throw bad_input("is of dimension " + std::to_string(dim) + ": scene " + scene.name + " needs " +
                     std::to_string(scene.dim));
@@ -215,6 +220,10 @@ SerialMesh mesh_of(const GmshFile &file, const Scene &scene) {
 }
 
 } // namespace
+
+int dimension_of_gmsh(const std::string &file) {
+  return dimension_of(read_gmsh_file(file));
+}
 
 std::pair<std::vector<std::string>, std::vector<std::string>> parts_of_gmsh(const std::string &file,
                                                                             int dim) {

@@ -64,7 +64,7 @@ bool fits(const OutputModel &outputs, const Scene &scene, Index cells) {
   return std::ranges::all_of(outputs.cells.parts, [&](const OutputCells::Part &part) {
     const auto below = [](int i, Index bound) { return i >= 0 && i < bound; };
     return below(part.output, std::ssize(scene.outputs)) && below(part.cell, cells) &&
-           below(part.facet + 1, 4) && part.term < std::max<Index>(terms, 2) &&
+           below(part.facet + 1, scene.dim + 2) && part.term < std::max<Index>(terms, 2) &&
            contact_of_part(part) < std::ssize(scene.contacts);
   });
 }

@@ -32,12 +32,13 @@ validate: random:20:2
 )";
 }
 
-std::string new_case(const std::string &mesh, const std::string &parts, const std::string &imposed,
-                     const std::string &contact, double depth) {
+std::string new_case(const std::string &physics, const std::string &mesh, const std::string &parts,
+                     const std::string &imposed, const std::string &contact, double depth) {
   const std::string range = "[" + short_number(depth / 10) + ", " + short_number(depth) + "]";
   return "# All keys: cases/CASE_FILE.md. " + parts + R"(
 rbvi: 1
-physics: plane_strain
+physics: )" +
+         physics + R"(
 mesh: {file: )" +
          mesh + R"(, degree: 2}
 

@@ -15,6 +15,8 @@ namespace rbvi {
 /// the file, nodes of no cell are left out; cells are turned to be positively oriented. Throws
 /// bad_input (see make_mesh).
 SerialMesh read_gmsh(const std::string &file, const Scene &scene);
+/// The largest of its elements. Throws bad_input where there are none.
+int dimension_of_gmsh(const std::string &file);
 /// The names of its physical groups of cells and of facets on their vertices, in a mesh of that
 /// dimension; each once. Throws bad_input.
 std::pair<std::vector<std::string>, std::vector<std::string>> parts_of_gmsh(const std::string &file,

@@ -34,9 +34,9 @@ Scene read_scene(const CaseNode &resolved);
 /// A case to begin with: a block with friction on a floor.
 std::string new_case();
 /// A case of a mesh file: its parts, in a comment; the lines of the sections imposed and contact,
-/// in which `depth` is a parameter with this upper bound.
-std::string new_case(const std::string &mesh, const std::string &parts, const std::string &imposed,
-                     const std::string &contact, double depth);
+/// in which `depth` is a parameter with this upper bound. `physics`: plane_strain or solid.
+std::string new_case(const std::string &physics, const std::string &mesh, const std::string &parts,
+                     const std::string &imposed, const std::string &contact, double depth);
 
 /// A key of case files.
 struct CaseKey {
