@@ -11,6 +11,7 @@
 #include "rbvi/solve/vectors.hpp"
 
 #include <algorithm>
+#include <ranges>
 #include <set>
 #include <vector>
 
@@ -19,7 +20,7 @@ namespace rbvi {
 namespace {
 
 constexpr double refined_above = 1e-11;
-constexpr int most_refinements = 4;
+constexpr int most_refinements = 4, while_refused = 12; // passes, where the limit is met or not
 
 /// The history of friction that a solution leaves, all rows of B on this rank.
 Vector slip_left(const Problem &problem, const Operators &op, const Vector &before,
@@ -142,7 +143,7 @@ MethodResult Condensed::solve(const ContactTask &task) {
 MethodResult Condensed::refined(FullBody &body, const ContactTask &task) {
   const Operators &op = task.op;
   std::vector<MethodResult> passes;
-  passes.reserve(most_refinements + 1);
+  passes.reserve(while_refused + 1);
   const auto add = [&](const Vector &start, const ActiveSetOptions &options) {
     MethodResult &result = passes.emplace_back(solve_active_set(body, op, start, options));
     if (result.converged)
@@ -154,17 +155,20 @@ MethodResult Condensed::refined(FullBody &body, const ContactTask &task) {
   // H has the round-off of A^-1, which iterative refinement takes out; where its own is as large,
   // the best of the passes counts.
   Vector correction = Vector::Zero(op.g.size());
-  for (int pass = 0; pass < most_refinements; ++pass) {
+  const auto residual = [](const MethodResult &of) { return of.kkt.largest(); };
+  for (int pass = 0; pass < while_refused; ++pass) {
     const MethodResult &last = passes.back();
-    if (last.kkt.largest() <= refined_above) break;
+    if (residual(last) <= refined_above) break;
+    if (pass >= most_refinements &&
+        std::ranges::min(passes | std::views::transform(residual)) <= residual_limit)
+      break;
     correction += op.g - op.b * restrict_to(problem_.trace(), last.free_u.get()) - last.w;
     if (!add(last.start.size() > 0 ? last.start : last.lambda, {false, false, correction, &last})) {
       passes.pop_back();
       break;
     }
   }
-  const auto best =
-      std::ranges::min_element(passes, {}, [](const MethodResult &of) { return of.kkt.largest(); });
+  const auto best = std::ranges::min_element(passes, {}, residual);
   int iterations = 0, columns = 0;
   double to_other = 0;
   for (const MethodResult &of : passes) {

@@ -36,6 +36,7 @@ FEW = {
 if shutil.which("gmsh"):  # which meshes geometries
     FEW |= {"bolted_flange": ["-train", "random:12:1", "-set", "mesh.set.edges=15"],
             "seal": ["-train", "random:12:1", "-set", "mesh.set.edges=40"]}
+    FEW |= {"rigid_ball": ["-train", "random:12:1", "-set", "mesh.set.size=2.5"]}
     FEW |= {name: ["-train", "random:12:1", "-set", "mesh.set.edges=10", "-radius", "7"]
             for name in ("bracket", "bracket/guided")}
     FEW |= {name: ["-train", "random:12:1", "-set", "mesh.set.edges=30", "-pull", "0,600"]

@@ -56,7 +56,7 @@ WRONG = [("rbvi", None), ("rbvi", 2), ("contact", None), ("physics", "plane_stri
          ("mesh/built_in", "two_blokcs"), ("mesh/degree", 3), ("mesh/set", {"size": []}),
          ("parameters/shear/range", [0]), ("parameters/shear/range", 0.2), ("parameters/shear/default", None),
          ("parameters/depth", 0.1), ("materials/rubber/at", None), ("materials/rubber/rho", 1),
-         ("imposed/top/uz", 0), ("contact/blocks/at", None), ("contact/blocks/friction", 0.3),
+         ("imposed/top/ut", 0), ("contact/blocks/at", None), ("contact/blocks/friction", 0.3),
          ("contact/blocks/against", {"wall": {}}), ("contact/blocks/kinematics", "finite"),
          ("contact/blocks/against", {"disk": {"center": [0, 0]}}), ("tests/strain/expect", None),
          ("tests/strain/expect/energy", [1]), ("tests/strain/mesh", {}), ("train", ["grid:5"])]

@@ -40,6 +40,7 @@ ROWS = {
     "seal": ("seal", []),
     "bracket": ("bracket", []),
     "joint": ("joint", []),
+    "rigid_ball": ("rigid_ball", ["-set", "mesh.set.size=2"]),
 }
 PARTS = ("bolted_flange", "seal", "bracket", "joint")  # of many parameters, from geometries that gmsh meshes
 HEAD = ["scene", "samples", "full solves: factorisations", "assemblies", "interpolations", "POD",

@@ -15,7 +15,7 @@ TEST_F(SweepTest, SamplesOfAnotherSceneAreRefused) {
   other.tree.insert(other.tree.find(load) + load.size(), "2*");
   const Error error = refusal(other);
   EXPECT_EQ(error.status(), Status::bad_input);
-  EXPECT_TRUE(contains(error.what(), "are of another scene: loads.pressure.force is 2*"))
+  EXPECT_TRUE(contains(error.what(), "are of another scene: force of pressure is 2*"))
       << error.what();
   EXPECT_TRUE(contains(error.what(), "rbvi offline makes them anew in another -out"))
       << error.what();
