@@ -111,9 +111,8 @@ std::function<Surface> surface_in(Reader &reader, const CaseNode &against) {
   for (const auto &[kind, node] : against.entries)
     found.push_back(kind);
   if (found.size() != 1 || std::ranges::find(kinds, found.front()) == kinds.end())
-    throw bad_input(std::string("against: ") + (solid ? "of a solid" : "a boundary") +
-                    ", or one of " + joined(kinds) +
-                    ": {disk: {...}}, {level_set: EXPRESSION}, ...");
+    throw bad_input((solid ? "a solid meets one of " : "against: a boundary, or one of ") +
+                    joined(kinds) + ": {plane: {...}}, {level_set: EXPRESSION}, ...");
   const std::string &kind = found.front();
   const CaseNode &node = entry(against, kind);
   if (kind == "plane") return plane_in(reader, node);

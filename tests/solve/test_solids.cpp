@@ -121,14 +121,53 @@ TEST(Solids, AnswersTurnWithTheBody) {
   }
 }
 
+/// A cube on the plane z = 0 that contact alone holds along z, or that is held all round.
+double pressed(const TemporaryFile &mesh, const std::string &material, const std::string &rest) {
+  return *solved(mesh,
+                 scene_of("parameters: {load: {range: [0, 1], default: 1}}\n"
+                          "materials: {rubber: {at: all, E: 15, nu: 0.3" +
+                          material +
+                          "}}\n"
+                          "contact: {floor: {at: z0, against: {plane: {normal: [0, 0, -1], "
+                          "position: 0}}}}\n" +
+                          rest),
+                 {1})
+              .outputs.normal_force;
+}
+
+/// Each kind of load by itself: what stands on the floor is its force.
+TEST(Solids, ContactCarriesEveryKindOfLoad) {
+  const TemporaryFile mesh(cube_mesh(3, 0.2));
+  const std::string guided = "imposed:\n  x: {at: x0, ux: 0}\n  y: {at: y0, uy: 0}\n";
+  EXPECT_NEAR(pressed(mesh, "", guided + "loads: {weight: {at: all, force: [0, 0, -2*load]}}\n"), 2,
+              1e-9);
+  EXPECT_NEAR(pressed(mesh, "", guided + "loads: {push: {at: z1, pressure: 0.5*load}}\n"), 0.5,
+              1e-9);
+  EXPECT_NEAR(pressed(mesh, "", guided + "loads: {push: {at: z1, traction: [0, 0, -load]}}\n"), 1,
+              1e-9);
+  EXPECT_NEAR(pressed(mesh, "", guided + "  top: {at: z1, force_z: -3*load}\n"), 3, 1e-9);
+  EXPECT_NEAR(pressed(mesh, "", guided + "springs: {bolt: {at: z1, pretension: 0.7*load}}\n"), 0.7,
+              1e-9);
+  const std::string held = "imposed:\n  x: {at: [x0, x1], ux: 0}\n  y: {at: [y0, y1], uy: 0}\n"
+                           "  z: {at: z1, uz: 0}\n";
+  EXPECT_NEAR(pressed(mesh, ", expansion: 0.001, temperature: load", held), 15 * 0.001 / 0.4, 1e-9)
+      << "E alpha T / (1 - 2 nu)";
+}
+
+/// A cube pressed and sheared onto a rigid sphere.
+Scene sheared(const std::string &friction) {
+  return scene_of("parameters: {push: {range: [0, 1], default: 0.05}}\n"
+                  "materials: {rubber: {at: all, E: 15, nu: 0.3}}\n"
+                  "imposed: {top: {at: z1, ux: 0.02, uy: 0.03, uz: -push}}\n"
+                  "contact: {foot: {at: z0, " +
+                  friction +
+                  "against: {sphere: {center: [0.45, 0.6, -1], radius: 1}}}}\nsmall: yes\n");
+}
+
 /// Without friction every force goes through the centre of the sphere.
 TEST(Solids, ThereIsNoMomentAboutARigidSphere) {
   const TemporaryFile mesh(cube_mesh(6, 0.1));
-  const Scene scene = scene_of("parameters: {push: {range: [0, 1], default: 0.05}}\n"
-                               "materials: {rubber: {at: all, E: 15, nu: 0.3}}\n"
-                               "imposed: {top: {at: z1, ux: 0.02, uy: 0.03, uz: -push}}\n"
-                               "contact: {foot: {at: z0, against: {sphere: {center: [0.45, 0.6, "
-                               "-1], radius: 1}}}}\nsmall: yes\n");
+  const Scene scene = sheared("");
   Problem problem(PETSC_COMM_WORLD, scene, {mesh.name()});
   const HfSolution solution = HighFidelity(problem, {}).solve({0.05});
   Point moment{}, sum{};
@@ -201,11 +240,7 @@ TEST(Solids, OutputsOverTheBodyAndContact) {
 /// Any number of ranks finds the same answer.
 TEST(Solids, AnswersDoNotDependOnRanks) {
   const TemporaryFile mesh(cube_mesh(5, 0.1));
-  const Scene scene = scene_of("parameters: {push: {range: [0, 1], default: 0.05}}\n"
-                               "materials: {rubber: {at: all, E: 15, nu: 0.3}}\n"
-                               "imposed: {top: {at: z1, ux: 0.02, uy: 0.03, uz: -push}}\n"
-                               "contact: {foot: {at: z0, friction: {coulomb: 0.2}, against: "
-                               "{sphere: {center: [0.45, 0.6, -1], radius: 1}}}}\nsmall: yes\n");
+  const Scene scene = sheared("friction: {coulomb: 0.2}, ");
   const HfSolution world = solved(mesh, scene, {0.05}),
                    alone = solved(mesh, scene, {0.05}, PETSC_COMM_SELF);
   EXPECT_LE((world.u - alone.u).norm(), 1e-9 * alone.u.norm());
@@ -240,8 +275,8 @@ TEST(Solids, RefusesWhatIsPlane) {
   const auto expect = [&](const std::string &says, const std::string &contact) {
     EXPECT_TRUE(refuses(says, [&] { (void)scene_of(body + contact); }));
   };
-  expect("of a solid, or one of plane", "contact: {foot: {at: z0, against: {disk: {center: [0, 0], "
-                                        "radius: 1}}}}\n");
+  expect("a solid meets one of plane", "contact: {foot: {at: z0, against: {disk: {center: [0, 0], "
+                                       "radius: 1}}}}\n");
   expect("a list of 3 numbers",
          "contact: {foot: {at: z0, against: {plane: {normal: [0, -1], position: 0}}}}\n");
   expect("kinematics: large", "contact: {foot: {at: z0, kinematics: large, against: {plane: "
