@@ -85,4 +85,13 @@ inline std::string coarse_gmsh(const std::string &boundary = "boundary", double 
   return out.str();
 }
 
+/// The coarse membrane, all of it the region of the obstacle.
+inline std::string one_region() {
+  std::string text = coarse_gmsh();
+  const std::string rest = " 2 2 3 1 ", obstacle = " 2 2 2 1 ";
+  for (std::size_t at = 0; (at = text.find(rest)) != std::string::npos;)
+    text.replace(at, rest.size(), obstacle);
+  return text;
+}
+
 } // namespace rbvi

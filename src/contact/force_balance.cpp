@@ -4,11 +4,13 @@
 #include "rbvi/core/formula.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/element/geometry.hpp"
+#include "rbvi/element/imposed.hpp"
 #include "rbvi/element/lagrange.hpp"
+#include "rbvi/element/quadrature.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <set>
 
 namespace rbvi {
@@ -110,17 +112,31 @@ std::vector<TwoRoads> two_roads(const Scene &scene, ContactInterface &interface,
   return sides;
 }
 
-TwoRoads two_roads(const std::vector<NitscheFace> &faces, const Matrix &pressures,
+TwoRoads two_roads(const NitscheLayer &layer, const FullMu &mu,
+                   const std::vector<NitscheFace> &faces, const Matrix &pressures,
                    const Vector &bounds) {
   TwoRoads roads;
   const Vector slopes = terms_of(faces).weighted(&PointTerm::slope, pressures, bounds);
-  for (Index i = 0; i < pressures.rows(); ++i) {
-    const NitscheFace &face = faces[static_cast<std::size_t>(i) / 4];
-    const NitschePoint &point = face.points[static_cast<std::size_t>(i) % 4];
-    NitschePoint::Row row = slopes[i] * point.normal(face.gamma);
-    if (bounds.size() > 0) row += slopes[pressures.rows() + i] * point.tangential(face.gamma);
-    const auto of_nodes = row.reshaped(2, 6);
-    roads.add_node({}, {of_nodes.row(0).sum(), of_nodes.row(1).sum(), 0});
+  Index i = 0;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const NitscheFace &face = faces[f];
+    Cell straight = layer.cells[f].cell; // whose nodes are between mapped vertices
+    map_cell(layer.scene, mu, straight);
+    straight.reference = straight.mapped;
+    const std::vector<Point> nodes = node_points(2, layer.scene.degree, straight);
+    const auto [first, second] = simplex_edges[layer.cells[f].edge];
+    for (std::size_t q = 0; q < face.points.size(); ++q, ++i) {
+      const NitschePoint &point = face.points[q];
+      const double s = edge_quadrature[q].s, bound = bounds.size() > 0 ? bounds[i] : 0;
+      roads.add_point((1 - s) * nodes[first] + s * nodes[second],
+                      nitsche_force(point, pressures(i, 0), pressures(i, 1), std::max(0.0, bound)));
+      NitschePoint::Row row = slopes[i] * point.normal(face.gamma);
+      if (bounds.size() > 0) row += slopes[pressures.rows() + i] * point.tangential(face.gamma);
+      for (std::size_t k = 0; k < nodes.size(); ++k) {
+        const auto at_node = row.segment<2>(2 * static_cast<Index>(k));
+        roads.add_node(nodes[k], {at_node[0], at_node[1], 0});
+      }
+    }
   }
   return roads;
 }
@@ -155,18 +171,20 @@ void check_forces(const NitscheLayer &layer, const FullMu &mu, const Vector &u, 
   const Vector bounds = nitsche_bounds(faces, pressures);
   Outputs outputs;
   nitsche_outputs(layer, mu, faces, u, pressures, bounds, outputs);
-  TwoRoads roads = two_roads(faces, pressures, bounds);
-  const auto of_domain = [&](const std::optional<double> &whole, double by_nodes) {
-    return whole ? *whole / image_count(layer.scene.mirrors) : by_nodes;
+  TwoRoads roads = two_roads(layer, mu, faces, pressures, bounds);
+  if (layer.scene.axisymmetric) // the others are no rigid motions
+    for (const std::size_t motion : {0U, 5U})
+      roads.by_points[motion] = roads.by_nodes[motion];
+  const int images = image_count(layer.scene.mirrors);
+  if (outputs.horizontal_reaction) roads.by_points[0] = *outputs.horizontal_reaction / images;
+  if (outputs.reaction) roads.by_points[1] = *outputs.reaction / images;
+  const auto text = [&](const Resultant &sum) {
+    return forces_text(layer.scene, sum) + " with the moment " + short_number(sum[5]);
   };
-  roads.by_points = {of_domain(outputs.horizontal_reaction, roads.by_nodes[0]),
-                     of_domain(outputs.reaction, roads.by_nodes[1])};
   if (const double apart = roads.difference(); !(apart <= tolerance))
-    throw failure(
-        "the forces of contact by Nitsche's method do not balance: by outputs they are (" +
-        short_number(roads.by_points[0]) + ", " + short_number(roads.by_points[1]) +
-        "), by the equations that were solved (" + short_number(roads.by_nodes[0]) + ", " +
-        short_number(roads.by_nodes[1]) + ")");
+    throw failure("the forces of contact by Nitsche's method do not balance: by outputs they are " +
+                  text(roads.by_points) + ", by the equations that were solved " +
+                  text(roads.by_nodes) + ", " + short_number(apart) + " of their terms apart");
 }
 
 } // namespace rbvi

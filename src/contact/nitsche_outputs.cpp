@@ -33,11 +33,11 @@ Sums integrate(std::span<const NitscheFace> faces, const Matrix &pressures, cons
       const Point &n = point.facing.normal, &out = point.body_normal;
       if (pressure > 0) check_pressed_side(dot(n, out), point.place.x);
       const double bound = bounds.size() > 0 ? std::max(0.0, bounds[number]) : 0;
-      const double held = std::clamp(shear, -bound, bound);
       force += point.weight * pressure;
-      sums.tangential += point.weight * std::abs(held);
-      sums.force[0] -= point.weight * (held * n[1] + pressure * n[0]);
-      sums.force[1] += point.weight * (held * n[0] - pressure * n[1]);
+      sums.tangential += point.weight * std::abs(std::clamp(shear, -bound, bound));
+      const Point at = nitsche_force(point, pressures(number, 0), shear, bound);
+      sums.force[0] += at[0];
+      sums.force[1] += at[1];
       if (pressure > 0) sums.contact += point.weight;
       if (pressure > 0 && std::abs(shear) < bound) sums.stick += point.weight;
       length += point.weight;
@@ -77,6 +77,13 @@ struct LawErrors {
 };
 
 } // namespace
+
+Point nitsche_force(const NitschePoint &point, double p_n, double p_tau, double bound) {
+  const double pressure = std::max(0.0, -p_n), held = std::clamp(p_tau, -bound, bound);
+  const Point &n = point.facing.normal;
+  return {-point.weight * (held * n[1] + pressure * n[0]),
+          point.weight * (held * n[0] - pressure * n[1]), 0};
+}
 
 double ends_in_contact(const CurveFields &fields, const std::vector<int> &open_ends) {
   return static_cast<double>(

@@ -202,8 +202,9 @@ void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Me
   RBVI_CALL(MatSetValuesCOO(matrix, all.data(), INSERT_VALUES));
 }
 
-void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
-              const Dofs &dofs, const MappedVertices &mapped, Vec vector) {
+LoadSums assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
+                  const Dofs &dofs, const MappedVertices &mapped, Vec vector) {
+  LoadSums sums;
   RBVI_CALL(VecZeroEntries(vector));
   RBVI_CALL(VecSetOption(vector, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
   CellRows rows{};
@@ -218,13 +219,17 @@ void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Me
     visit_values(*weighted.form, mu, mesh, dofs, mapped,
                  [&](std::size_t cell, const std::vector<int> &local, const double *values) {
                    cell_rows(mesh, dofs, cell, rows);
-                   for (const int i : local)
-                     RBVI_CALL(
-                         VecSetValue(vector, rows[i], weighted.weight * *values++, ADD_VALUES));
+                   for (const int i : local) {
+                     const double value = weighted.weight * *values++;
+                     RBVI_CALL(VecSetValue(vector, rows[i], value, ADD_VALUES));
+                     if (!weighted.of_imposed)
+                       sums = sums + LoadSums{value, rows[i] < 0 ? value : 0, std::abs(value)};
+                   }
                  });
   }
   RBVI_CALL(VecAssemblyBegin(vector));
   RBVI_CALL(VecAssemblyEnd(vector));
+  return sums;
 }
 
 double integral(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,

@@ -18,20 +18,32 @@ namespace {
 using Flags = std::vector<PetscInt>; ///< by body
 using Means = std::vector<Mean>;
 
+/// Regions and boundaries may have the same names.
+std::string region_key(const std::string &region) {
+  return "region " + region;
+}
+
 auto count_of(const Sum &sum, const Means &means) {
   return std::ranges::count_if(sum,
                                [&](const Term &term) { return are_same(term.form.means, means); });
 }
 
-std::map<std::string, Flags> bodies_of_boundaries(const Mesh &mesh) {
+/// Of boundaries, and of the regions of obstacles.
+std::map<std::string, Flags> bodies_of_parts(const Scene &scene, const Mesh &mesh) {
   std::map<std::string, Flags> result;
-  for (const auto &[name, facets] : mesh.facets) {
+  const auto add = [&](const std::string &name, const std::vector<CellFacet> &places) {
     Flags &bodies = result[name];
-    bodies.assign(static_cast<std::size_t>(mesh.bodies), 0);
-    for (const CellFacet &at : facets)
+    bodies.resize(static_cast<std::size_t>(mesh.bodies), 0);
+    for (const CellFacet &at : places)
       bodies[static_cast<std::size_t>(mesh.body[at.cell])] = 1;
     over_ranks(mesh.comm, MPI_MAX, bodies);
-  }
+  };
+  for (const auto &[name, facets] : mesh.facets)
+    add(name, facets);
+  for (const ContactRecipe &contact : scene.contacts)
+    if (contact.entities.kind == InterfaceEntities::Kind::cells)
+      add(region_key(contact.entities.parts[0]),
+          places_of(mesh, {contact.entities.parts[0], {}, ""}));
   return result;
 }
 
@@ -44,11 +56,12 @@ public:
         in_(static_cast<std::size_t>(mesh_.bodies), 0) {
     in_[body] = 1;
     forces.direction = direction;
+    forces.membrane = scene_.components == 1;
     add_reactions();
     known = add_contacts() && add_means();
     for (const Term &term : scene_.a)
       known = known && (term.form.boundary.empty() || share(term.form.boundary) == 0);
-    for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t c = 0; c < 3 && !forces.membrane; ++c)
       known = known && (direction[c] == 0 ||
                         !(cancels(scene_.mirrors, c) || (scene_.axisymmetric && c == 0)));
   }
@@ -117,8 +130,10 @@ private:
   bool add_contacts() {
     for (std::size_t i = 0; i < scene_.contacts.size(); ++i) {
       double sign = 0, side = 1;
-      for (const std::string &part : scene_.contacts[i].entities.parts) {
-        const std::optional<int> of_part = share(part);
+      const InterfaceEntities &entities = scene_.contacts[i].entities;
+      const bool of_cells = entities.kind == InterfaceEntities::Kind::cells;
+      for (const std::string &part : entities.parts) {
+        const std::optional<int> of_part = share(of_cells ? region_key(part) : part);
         if (!of_part) return false;
         sign += side * *of_part;
         side = -1;
@@ -173,8 +188,9 @@ private:
 
 /// Once each, with all bodies that a sum has to have.
 std::vector<Group> groups_of(const Problem &problem, const std::map<std::string, Flags> &bodies) {
-  std::vector<Point> directions{{1, 0, 0}, {0, 1, 0}};
-  if (problem.scene().dim == 3) directions.push_back({0, 0, 1});
+  std::vector<Point> directions{{1, 0, 0}};
+  if (problem.scene().components > 1) directions.push_back({0, 1, 0});
+  if (problem.scene().components == 3) directions.push_back({0, 0, 1});
   for (const OutputForm &form : problem.scene().outputs)
     if (form.kind == OutputForm::Kind::reaction && std::ranges::count(form.vector, 0.0) < 2)
       directions.push_back(form.vector);
@@ -200,7 +216,7 @@ void add_load(const Problem &problem, const FullMu &mu, const Term &load,
               std::vector<Group> &groups) {
   const Mesh &mesh = problem.mesh();
   const double theta = load.theta ? coefficient_of(load, mu) : 1;
-  const auto dim = static_cast<std::size_t>(mesh.dim);
+  const auto components = static_cast<std::size_t>(problem.dofs().components);
   std::array<double, 3 * most_nodes> values{};
   for (const auto &[number, facet] : places_of(mesh, load.form)) {
     if (std::ranges::none_of(groups, [&](const Group &group) { return group.has(number); }))
@@ -211,8 +227,9 @@ void add_load(const Problem &problem, const FullMu &mu, const Term &load,
     load.form.kernel(load.theta ? FullMu{} : mu, cell, values.data());
     const int nodes = nodes_per_cell(facet < 0 ? mesh.dim : mesh.dim - 1, mesh.degree);
     for (Group &group : groups)
-      for (std::size_t i = 0; i < dim * static_cast<std::size_t>(nodes) && group.has(number); ++i) {
-        const double force = theta * values[i] * group.forces.direction[i % dim];
+      for (std::size_t i = 0; i < components * static_cast<std::size_t>(nodes) && group.has(number);
+           ++i) {
+        const double force = theta * values[i] * group.forces.direction[i % components];
         group.forces.load += force;
         group.forces.sizes += std::abs(force);
       }
@@ -223,8 +240,11 @@ void add_load(const Problem &problem, const FullMu &mu, const Term &load,
 
 std::vector<BodyForces> forces_on_bodies(const Problem &problem, const FullMu &mu) {
   const Scene &scene = problem.scene();
-  if (scene.components == 1 || scene.materials.empty()) return {};
-  std::vector<Group> groups = groups_of(problem, bodies_of_boundaries(problem.mesh()));
+  const bool holds = std::ranges::any_of(scene.outputs, [](const OutputForm &output) {
+    return output.kind == OutputForm::Kind::reaction;
+  });
+  if (scene.components == 1 ? !holds : scene.materials.empty()) return {};
+  std::vector<Group> groups = groups_of(problem, bodies_of_parts(scene, problem.mesh()));
   collectively(problem.comm(), [&] {
     for (const Term &load : scene.f)
       if (load.form.kernel && !load.of_imposed) add_load(problem, mu, load, groups);
@@ -260,6 +280,7 @@ std::array<double, 2> left_of(const BodyForces &forces, const Outputs &outputs) 
         outputs.interfaces.empty() ? outputs : outputs.interfaces[static_cast<std::size_t>(number)];
     const std::array along{one.force_x ? one.force_x : one.horizontal_reaction,
                            one.force_y ? one.force_y : one.reaction, one.force_z};
+    if (forces.membrane) left += sign * one.normal_force.value_or(0);
     for (std::size_t c = 0; c < along.size(); ++c)
       left += sign * forces.direction[c] * along[c].value_or(0);
     sizes += one.normal_force.value_or(0) + one.tangential_force.value_or(0);
@@ -272,11 +293,13 @@ void check_balance(const Problem &problem, const FullMu &mu, const Outputs &outp
   for (const BodyForces &forces : forces_on_bodies(problem, mu))
     if (const auto [left, sizes] = left_of(forces, outputs);
         !(std::abs(left) <= tolerance * sizes + round_off))
-      throw failure("the forces on the body of the boundary '" + forces.boundary +
-                    "' do not balance along " + place_text(forces.direction) +
-                    ": what outputs say of contact, " +
-                    "reactions and springs leaves, with the loads, " + short_number(left) + " of " +
-                    short_number(sizes));
+      throw failure(
+          "the forces on the " +
+          (forces.membrane ? "membrane of '" + forces.boundary + "' do not balance"
+                           : "body of the boundary '" + forces.boundary +
+                                 "' do not balance along " + place_text(forces.direction)) +
+          ": what outputs say of contact, " + "reactions and springs leaves, with the loads, " +
+          short_number(left) + " of " + short_number(sizes));
 }
 
 } // namespace rbvi

@@ -45,6 +45,17 @@ void add(double factor, Vec term, Vec total) {
   RBVI_CALL(VecAXPY(total, factor, term));
 }
 
+LoadSums fill(const std::vector<WeightedForm> &forms, const FullMu &mu, const Domain &domain,
+              Mat matrix) {
+  assemble(forms, mu, domain.mesh, domain.dofs, domain.mapped, matrix);
+  return {};
+}
+
+LoadSums fill(const std::vector<WeightedForm> &forms, const FullMu &mu, const Domain &domain,
+              Vec vector) {
+  return assemble(forms, mu, domain.mesh, domain.dofs, domain.mapped, vector);
+}
+
 /// Throws bad_input where an entry is not finite: some norms pass over what is no number, these two
 /// do not.
 void check_finite(Mat stiffness, const std::string &where) {
@@ -72,9 +83,9 @@ Summed<Object> make_summed(const Sum &sum, const ParameterSpace &space, const Me
   for (const ExactGroup &group : result.split.exact) {
     std::vector<WeightedForm> forms;
     for (const auto &[term, weight] : group.members)
-      forms.push_back({&sum[term].form, weight});
+      forms.push_back({&sum[term].form, weight, sum[term].of_imposed});
     result.exact.push_back(make<Object>(mesh, dofs));
-    assemble(forms, {}, mesh, dofs, {}, result.exact.back().get());
+    result.exact_sums.push_back(fill(forms, {}, {mesh, dofs, {}}, result.exact.back().get()));
   }
   const bool mapped = !result.split.mapped.empty();
   if (mapped) result.mapped = make<Object>(mesh, dofs);
@@ -94,12 +105,15 @@ void sum_up(const Sum &sum, const ParameterSpace &space, const FullMu &all_param
   const std::vector<double> coefficients =
       exact_coefficients(sum, summed.split, space, all_parameters);
   summed.made_at.reset();
+  summed.sums = {};
   if (summed.mapped) {
     std::vector<WeightedForm> forms;
     for (const int term : summed.split.mapped)
-      forms.push_back({&sum[term].form});
-    assemble(forms, all_parameters, domain.mesh, domain.dofs, domain.mapped, summed.mapped.get());
+      forms.push_back({&sum[term].form, 1, sum[term].of_imposed});
+    summed.sums = fill(forms, all_parameters, domain, summed.mapped.get());
   }
+  for (std::size_t q = 0; q < summed.exact.size(); ++q)
+    summed.sums = summed.sums + coefficients[q] * summed.exact_sums[q];
   const Object total = summed.total.get();
   const bool is_one = total == summed.mapped.get() ||
                       (!summed.exact.empty() && total == summed.exact.front().get());

@@ -141,8 +141,10 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
   result.outputs.seconds = MPI_Wtime() - start;
   check_finite(result.outputs);
   method_->check(result);
-  check_balance(problem_, op.mu, result.outputs, std::max(balanced, 10 * result.residual),
-                balanced * of_stresses * size_of_stresses(op, result.free_u.get()));
+  const double tolerance = std::max(balanced, 10 * result.residual),
+               round_off = balanced * of_stresses * size_of_stresses(op, result.free_u.get());
+  check_balance(problem_, op.mu, result.outputs, tolerance, round_off);
+  check_membrane(problem_, op.mu, result.u, result.lambda, result.outputs, tolerance, round_off);
   solved_->add(op.mu, method_->kept(result));
   return std::move(static_cast<HfSolution &>(result));
 }

@@ -118,25 +118,83 @@ TEST(ForceBalance, AMembraneIsPushedWithItsPressures) {
   }
 }
 
-/// The terms of Nitsche's method push with what outputs say, with friction and on an arc.
+/// A state of a layer, and what its terms push with.
+struct NitscheRoads {
+  NitscheLayer layer;
+  Vector u;
+  std::vector<NitscheFace> faces = nitsche_faces(layer, mu, layer.cells, u);
+  Matrix pressures = nitsche_pressures(faces, u);
+  Vector bounds = nitsche_bounds(faces, pressures);
+  TwoRoads roads() const { return two_roads(layer, mu, faces, pressures, bounds); }
+};
+
+/// The terms of Nitsche's method push with what outputs say, with friction and on an arc, and turn
+/// the body with the same moment.
 TEST(ForceBalance, NitschesTermsPushWithTheForcesOfOutputs) {
   for (const int degree : {1, 2}) {
-    SupportScene scene = half_disk(degree);
+    const SupportScene scene = half_disk(degree);
     const Strip s = strip(degree, arc(8, 0.6));
-    const Vector u = nodal(scene, mu, s, [](const Point &x) {
-      return Point{0.01 * x[0], -0.02 + 0.01 * x[0], 0};
-    });
-    const NitscheLayer layer = layer_of(scene, s);
-    check_forces(layer, mu, u);
-    std::vector<NitscheFace> faces = nitsche_faces(layer, mu, layer.cells);
-    const Matrix pressures = nitsche_pressures(faces, u);
-    const Vector bounds = nitsche_bounds(faces, pressures);
-    const TwoRoads right = two_roads(faces, pressures, bounds);
-    EXPECT_GT(right.by_nodes[1], 0.1) << "there is something to compare";
-    faces[3].points[1].n *= 1.01;
-    TwoRoads wrong = two_roads(faces, pressures, bounds);
-    wrong.by_points = right.by_nodes;
-    EXPECT_GT(wrong.difference(), 1e-5);
+    const NitscheRoads right{layer_of(scene, s), nodal(scene, mu, s, [](const Point &x) {
+                               return Point{0.01 * x[0], -0.02 + 0.01 * x[0], 0};
+                             })};
+    check_forces(right.layer, mu, right.u);
+    EXPECT_LT(right.roads().difference(), 1e-13);
+    for (const std::size_t motion : {0U, 1U, 5U})
+      EXPECT_GT(std::abs(right.roads().by_nodes[motion]), 0.01) << "there is something to compare";
+    NitscheRoads weighed = right, turned = right, dropped = right;
+    weighed.faces[3].points[1].n *= 1.01;
+    EXPECT_GT(weighed.roads().difference(), 1e-5) << "a wrong weight of a force";
+    for (NitscheFace &face : turned.faces)
+      for (NitschePoint &point : face.points)
+        point.tau *= -1;
+    EXPECT_GT(turned.roads().difference(), 1e-3) << "a wrong sign of friction";
+    dropped.faces[3].points[1].n.head<2>().setZero();
+    EXPECT_GT(dropped.roads().difference(), 1e-5) << "a node is left out";
+  }
+}
+
+/// A force that acts at another point of its edge leaves the sum of forces as it is, but turns the
+/// body.
+TEST(ForceBalance, MomentsSeeWhereNitschesForcesAct) {
+  const SupportScene scene = half_disk(2);
+  const Strip s = strip(2, arc(8, 0.6));
+  NitscheRoads wrong{layer_of(scene, s), nodal(scene, mu, s, [](const Point &) {
+                       return Point{0, -0.02, 0};
+                     })};
+  std::swap(wrong.faces[4].points[0], wrong.faces[4].points[3]);
+  wrong.pressures = nitsche_pressures(wrong.faces, wrong.u);
+  wrong.bounds = nitsche_bounds(wrong.faces, wrong.pressures);
+  const TwoRoads roads = wrong.roads();
+  for (const std::size_t force : {0U, 1U})
+    EXPECT_NEAR(roads.by_points[force], roads.by_nodes[force], 1e-13 * roads.sizes[1]);
+  EXPECT_GT(std::abs(roads.by_points[5] - roads.by_nodes[5]), 1e-6 * roads.sizes[5]);
+  EXPECT_GT(roads.difference(), 1e-6);
+}
+
+/// A body that goes down by d as a whole onto the floor below [1, 3]: no stress, P_n = -gamma d on
+/// each edge, and gamma as in GammaIsThatOfTheMaterialAndTheReferenceEdge.
+TEST(ForceBalance, NitschesMomentOfARigidBodyIsThatOfItsPressures) {
+  const double d = 0.02;
+  for (const int degree : {1, 2}) {
+    SupportScene scene = support_scene(degree);
+    scene.support.friction = {};
+    scene.materials = {{{}, [](const FullMu &, const Point &) { return Lame{9, 4}; }}};
+    const Strip s = strip(degree, {{1, 0, 0}, {1.5, 0, 0}, {3, 0, 0}});
+    const NitscheRoads rigid{layer_of(scene, s), nodal(scene, mu, s, [d](const Point &) {
+                               return Point{0, -d, 0};
+                             })};
+    double force = 0, moment = 0;
+    for (const auto &[begin, end] : {std::pair{1.0, 1.5}, {1.5, 3.0}}) {
+      const double pressure = 0.3 * (9 + 2 * 4) / (end - begin) * d;
+      force += pressure * (end - begin);
+      moment += pressure * (end * end - begin * begin) / 2;
+    }
+    const TwoRoads roads = rigid.roads();
+    for (const Resultant &sum : {roads.by_points, roads.by_nodes}) {
+      EXPECT_NEAR(sum[0], 0, 1e-14);
+      EXPECT_NEAR(sum[1], force, 1e-13 * force);
+      EXPECT_NEAR(sum[5], moment, 1e-13 * moment);
+    }
   }
 }
 

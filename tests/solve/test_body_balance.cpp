@@ -1,6 +1,9 @@
 // All forces on a body as outputs print them: they balance where every kind of term acts, and a
 // wrong one is named with the body.
+#include "../coarse_mesh.hpp"
+#include "../mesh/temporary_file.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/fem/body_balance.hpp"
 #include "rbvi/scene/case.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
@@ -124,6 +127,105 @@ TEST(BodyBalance, IsOfTheWholeOfHalfModelsAndTurnedBodiesAndByNitsche) {
                                      "FORMULATION", formulation)),
                        1, "up");
       }
+}
+
+/// Of a square of area 1 over an obstacle in its middle.
+Scene membrane(const std::string &more) {
+  return scene_of("physics: membrane\nmesh: {built_in: square_with_disc, edges: 24, degree: 1}\n" +
+                  more);
+}
+
+const std::string tilted = "imposed: {frame: {at: boundary, u: d + 0.3*x}}\n";
+
+/// An answer on a membrane.
+struct Pushed {
+  Problem problem;
+  const Mu mu{0.047};
+  const FullMu all = expand(problem.scene().parameters, mu);
+  HfSolution s = HighFidelity(problem, {}).solve(mu);
+  explicit Pushed(const Scene &scene, const std::string &mesh = "")
+      : problem(PETSC_COMM_WORLD, scene, {mesh}) {}
+  MembraneForces forces() const {
+    return forces_on_membrane(problem, all, s.u, s.lambda, s.outputs).value();
+  }
+  double share_left() const { return std::abs(forces().left()) / forces().sizes; }
+};
+
+/// Without contact the frame carries the load, and a plane carries nothing, whatever its tilt.
+TEST(BodyBalance, AFrameCarriesTheLoadOfItsMembrane) {
+  const Pushed loaded(membrane(
+      tilted +
+      "loads: {weight: {at: all, force: -25}}\ncontact: {far: {at: obstacle, above: -9}}\n"));
+  EXPECT_NEAR(loaded.forces().load, -25, 1e-12 * 25);
+  EXPECT_NEAR(loaded.forces().flux, 25, 1e-12 * 25);
+  EXPECT_EQ(loaded.forces().contact, 0);
+  const Pushed plane(membrane(tilted + "contact: {far: {at: obstacle, above: -9}}\n"));
+  EXPECT_GT(plane.forces().sizes, 0.3) << "it pulls up here and down there";
+  EXPECT_NEAR(plane.forces().flux, 0, 1e-12 * plane.forces().sizes);
+}
+
+/// With contact and a map; in the middle, and on the whole of the membrane, where nodes of the
+/// frame have no multiplier (lumped) or share that of a node beside them.
+TEST(BodyBalance, IsThatOfAMembraneWithContact) {
+  for (const bool lumped : {true, false})
+    for (const bool whole : {true, false}) {
+      Scene scene = membrane(
+          tilted + "map: [1.1*x + d*y, y + 0.2*x*y]\n" +
+          "loads: {weight: {at: all, force: -20 - 5*x}}\n" +
+          "contact: {table: {at: obstacle, above: d - 0.05 - 0.6*x*x - 0.4*y*y, lumped: " +
+          (lumped ? "yes" : "no") + "}}\noutputs: {rim: {reaction: [1, 0], at: boundary}}\n");
+      scene.mesh.facts.clear(); // the region is no disc
+      const TemporaryFile file(whole ? one_region() : coarse_gmsh());
+      Pushed pushed(scene, file.name());
+      EXPECT_GT(pushed.forces().contact, 1) << "there is something to compare";
+      EXPECT_LT(pushed.share_left(), 1e-13);
+      EXPECT_NEAR(pushed.s.outputs.named.front().value, pushed.forces().flux,
+                  1e-12 * pushed.forces().sizes);
+      const std::vector<double> shares = shares_left(pushed.problem, pushed.mu, pushed.s.outputs);
+      ASSERT_EQ(shares.size(), 1U);
+      EXPECT_LT(shares.front(), 1e-13);
+      const double right = *pushed.s.outputs.normal_force;
+      pushed.s.outputs.normal_force = -right;
+      EXPECT_GT(pushed.share_left(), 0.01) << "a wrong sign of contact";
+      pushed.s.outputs.normal_force = right;
+      pushed.s.u -= pushed.problem.imposed_displacement(pushed.mu);
+      EXPECT_GT(pushed.share_left(), 1e-3) << "imposed values are left out";
+    }
+}
+
+/// A row of the rim that is dropped, and the name in what is said.
+TEST(BodyBalance, NamesAMembraneThatDoesNotBalance) {
+  Pushed pushed(membrane("imposed: {frame: {at: boundary, u: 0}}\n"
+                         "loads: {weight: {at: all, force: -25}}\n"
+                         "contact: {table: {at: obstacle, above: -0.2 - 0.1*d}}\n"));
+  const auto check = [&] {
+    check_membrane(pushed.problem, pushed.all, pushed.s.u, pushed.s.lambda, pushed.s.outputs, 1e-10,
+                   0);
+  };
+  check();
+  const Mesh &mesh = pushed.problem.mesh();
+  for (std::size_t node = 0; node < mesh.points.size(); ++node) // in one corner no flux is left
+    if (const Point &x = mesh.points[node]; x[0] > 0.35 && x[1] > 0.35)
+      pushed.s.u[mesh.natural_node[node]] = 0;
+  try {
+    check();
+    ADD_FAILURE() << "a dropped row passes";
+  } catch (const Error &error) {
+    EXPECT_EQ(std::string(error.what()).find("the forces on the membrane of 'table' do not"), 0U)
+        << error.what();
+  }
+}
+
+/// Springs of so much per area carry a part that no row tells: nothing is said.
+TEST(BodyBalance, OfAMembraneOnABedNothingIsKnown) {
+  Scene scene = membrane("imposed: {frame: {at: boundary, u: 0}}\n"
+                         "loads: {weight: {at: all, force: -25}}\n"
+                         "contact: {table: {at: obstacle, above: -0.2 - 0.1*d}}\n");
+  scene.a.push_back(exact_term(h1_product(0, 1, 1)));
+  scene.tree.clear();
+  const Pushed pushed(scene);
+  EXPECT_FALSE(forces_on_membrane(pushed.problem, pushed.all, pushed.s.u, pushed.s.lambda,
+                                  pushed.s.outputs));
 }
 
 } // namespace

@@ -34,15 +34,6 @@ Solved solve(const Scene &scene, const Mu &mu, const std::string &mesh = "", int
   return result;
 }
 
-/// The coarse membrane, all of it the region of the obstacle.
-std::string one_region() {
-  std::string text = coarse_gmsh();
-  const std::string rest = " 2 2 3 1 ", obstacle = " 2 2 2 1 ";
-  for (std::size_t at = 0; (at = text.find(rest)) != std::string::npos;)
-    text.replace(at, rest.size(), obstacle);
-  return text;
-}
-
 Scene membrane(const std::string &lumped) {
   Scene scene = make_scene("membrane_obstacle", {{"lumped", lumped}});
   scene.mesh.facts.clear(); // its region is no disc

@@ -1,7 +1,8 @@
 // The forces of contact added up on two roads, for each side of each interface, on the rigid
 // motions of the plane (two translations, a turn about the origin of the mapped mesh) or of space,
 // of a membrane on the constant: as outputs know them, by the normals and pressures at points, and
-// as the solver does, lambda^T B on the motion, or Nitsche's terms on the translations.
+// as the solver does, lambda^T B, or Nitsche's terms, on the motion. Of a body that is turned about
+// x = 0 Nitsche's terms know of no motion but that along the axis.
 //
 // It sees a normal, a weight, a point or a side that one road has and the other has not. It does
 // not see a gap, which leaves forces in balance, nor a normal that both ask the same wrong function
@@ -32,8 +33,10 @@ struct TwoRoads {
 std::vector<TwoRoads> two_roads(const Scene &scene, ContactInterface &interface, const FullMu &mu,
                                 const ContactState &state, const Vector &lambda,
                                 const Vector &solved = {});
-/// What Nitsche's terms test translations with; `by_points` is left zero.
-TwoRoads two_roads(const std::vector<NitscheFace> &faces, const Matrix &pressures,
+/// By Nitsche's method, of all curves: the forces of the points of `faces`, which are those of all
+/// cells of the layer at its state, and what its terms test rigid motions with.
+TwoRoads two_roads(const NitscheLayer &layer, const FullMu &mu,
+                   const std::vector<NitscheFace> &faces, const Matrix &pressures,
                    const Vector &bounds);
 
 /// Throws failure, naming contact and boundary, where the roads differ by more than `tolerance` of

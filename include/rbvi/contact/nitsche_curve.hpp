@@ -216,6 +216,10 @@ CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t curve, const F
 /// multipliers of the mixed method.
 Vector nitsche_multiplier(const NitscheLayer &layer, const FullMu &mu, const Vector &u);
 
+/// What outputs have a point push the body with, its weight included, at pressures P_n and P_tau;
+/// `bound` >= 0: of friction there.
+Point nitsche_force(const NitschePoint &point, double p_n, double p_tau, double bound);
+
 /// How many of a curve's open ends are in contact.
 double ends_in_contact(const CurveFields &fields, const std::vector<int> &open_ends);
 

@@ -6,6 +6,8 @@
 #include "rbvi/fem/dofs.hpp"
 #include "rbvi/mesh/mesh.hpp"
 
+#include <cmath>
+
 namespace rbvi {
 
 /// Where h(mu) takes this rank's vertices, in the order of Mesh::points; empty: they stay.
@@ -30,7 +32,21 @@ std::vector<CellFacet> places_of(const Mesh &mesh, const Form &form);
 struct WeightedForm {
   const Form *form;
   double weight = 1;
+  bool of_imposed = false; ///< Term::of_imposed
 };
+
+/// A load on the function that is 1 everywhere, without that of imposed values: what the cells of
+/// this rank give. Of a displacement with several components it makes no sense.
+struct LoadSums {
+  double all = 0, held = 0; ///< of all nodal functions, of those of held dofs
+  double sizes = 0;         ///< of all terms
+};
+inline LoadSums operator+(const LoadSums &one, const LoadSums &other) {
+  return {one.all + other.all, one.held + other.held, one.sizes + other.sizes};
+}
+inline LoadSums operator*(double factor, const LoadSums &sums) {
+  return {factor * sums.all, factor * sums.held, std::abs(factor) * sums.sizes};
+}
 
 /// All terms of a sum with the weight 1, whatever their coefficients. `sum` must outlive them.
 std::vector<WeightedForm> forms_of(const Sum &sum);
@@ -43,8 +59,8 @@ void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Me
               const Dofs &dofs, const MappedVertices &mapped, Mat matrix);
 
 /// Overwrites a vector by the sum of linear forms. Collective.
-void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
-              const Dofs &dofs, const MappedVertices &mapped, Vec vector);
+LoadSums assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
+                  const Dofs &dofs, const MappedVertices &mapped, Vec vector);
 
 /// The sum over all cells of forms that fill a single number each (imposed_energy). Collective.
 double integral(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,

@@ -14,6 +14,8 @@ template <class Object> struct Summed {
   Handle<Object> mapped;             ///< the other terms at the mu of the last sum_up
   Handle<Object> total;
   std::optional<std::vector<double>> made_at{}; ///< values_of_dependence
+  std::vector<LoadSums> exact_sums{};           ///< of a load: of each group
+  LoadSums sums{};                              ///< of the load `total`
 };
 
 /// Assembles the exact groups: integrals over the reference domain, of kernels that depend on no
