@@ -75,6 +75,24 @@ void add_held(const ContactInterface &interface, const FullMu &mu, Outputs &outp
   outputs.max_penetration = std::max(outputs.max_penetration.value_or(0), deepest);
 }
 
+/// Adds the pull of adhesion, which multipliers have not, to forces and pressures of the domain.
+void add_pull(ContactInterface &interface, const FullMu &mu, const ContactState &state,
+              Outputs &outputs) {
+  const Pull pull = pull_of(interface, mu, state);
+  if (pull.pressure == 0) return;
+  const auto add = [](double more, std::optional<double> &output) {
+    if (output) *output += more;
+  };
+  add(pull.normal_force, outputs.normal_force);
+  add(-pull.pressure, outputs.peak_pressure);
+  add(-pull.pressure, outputs.centre_pressure);
+  add(pull.force[0], outputs.horizontal_reaction);
+  add(pull.force[1], outputs.reaction);
+  add(pull.force[0], outputs.force_x);
+  add(pull.force[1], outputs.force_y);
+  add(pull.force[2], outputs.force_z);
+}
+
 /// Throws bad_input where Nitsche's method would need the stress of imposed values.
 void check_imposed(const ContactRecipe &recipe, const InterfaceMesh &mesh) {
   if (recipe.formulation == Formulation::nitsche &&
@@ -242,12 +260,13 @@ void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOper
   const MirrorPlanes &mirrors = contact.interfaces.front()->mirrors();
   if (contact.interfaces.size() == 1) {
     contact.interfaces.front()->outputs(mu, operators, lambda, least, outputs);
+    add_pull(*contact.interfaces.front(), mu, operators.state, outputs);
     make_whole(mirrors, outputs);
     return add_held(*contact.interfaces.front(), mu, outputs);
   }
   Index node = 0;
   for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
-    const ContactInterface &interface = *contact.interfaces[i];
+    ContactInterface &interface = *contact.interfaces[i];
     ContactOperators part;
     part.weights = operators.weights.segment(node, interface.dual().nodes());
     part.state = operators.state;
@@ -256,10 +275,34 @@ void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOper
     one.name = contact.names[i];
     interface.outputs(mu, part, lambda.segment(contact.first_row[i], interface.dual().size()),
                       least, one);
+    add_pull(interface, mu, operators.state, one);
     make_whole(mirrors, one);
     add_held(interface, mu, one);
     add_contact(one, outputs);
   }
+}
+
+Pull pull_of(ContactInterface &interface, const FullMu &mu, const ContactState &state) {
+  Pull pull{.pressure = interface.bound(mu).pull};
+  if (pull.pressure == 0) return pull;
+  const DualSpace &dual = interface.dual();
+  Vector lambda = Vector::Zero(dual.size());
+  lambda.head(dual.nodes()).setConstant(-pull.pressure);
+  ContactOperators operators;
+  interface.assemble_nodal(mu, state, lambda, operators);
+  pull.normal_force = operators.weights.dot(lambda.head(dual.nodes()));
+  for (const PointForce &at : interface.point_forces(mu, state, lambda))
+    pull.force = pull.force + at.force;
+  return pull;
+}
+
+Grid contact_fields(ContactInterface &interface, const FullMu &mu, const Vector &u,
+                    const Vector &lambda) {
+  Grid grid = interface.fields(mu, u, lambda, false);
+  for (std::vector<Field> *fields : {&grid.of_nodes, &grid.of_cells})
+    for (Field &field : *fields)
+      if (field.name == "pressure") field.values.array() -= interface.bound(mu).pull;
+  return grid;
 }
 
 DualRow dual_row(const Contact &contact, Index row) {

@@ -249,8 +249,13 @@ void add_lines(const std::vector<ContactLine> &lines, bool turned, OutputLines &
 } // namespace
 
 std::vector<ContactLine> contact_lines(const Grid &grid, const FrictionBound &bound, double least) {
-  if (grid.per_cell > 2) return surface_lines(grid, bound, least);
-  return Lines(grid, bound, least).cut();
+  std::vector<ContactLine> lines =
+      grid.per_cell > 2 ? surface_lines(grid, bound, least) : Lines(grid, bound, least).cut();
+  for (ContactLine &line : lines)
+    for (auto *places : {&line.fields, &line.seen})
+      for (OutputFields &fields : *places)
+        fields[field::pressure] -= bound.pull; // what multipliers count from
+  return lines;
 }
 
 void check_outputs(const Scene &scene) {

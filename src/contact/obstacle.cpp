@@ -26,6 +26,10 @@ public:
       simplices_.insert(simplices_.end(), mesh_.nodes_of(e), mesh_.nodes_of(e) + mesh_.dim + 1);
     set_dual(1 + *std::ranges::max_element(simplices_), 1, obstacle_.lumped, gram());
     if (!obstacle_.region.empty()) rim_ = rim();
+    if (obstacle_.adhesion && obstacle_.lumped && dual_.nodes() < std::ssize(dual_of_vertex()))
+      throw bad_input(
+          "adhesion up to where a membrane is held is for exact quadrature: set lumped: "
+          "no");
   }
 
   void integrate(const FullMu &mu, const Cell &cell, EntityValues &values) const override {
@@ -35,6 +39,9 @@ public:
   void weigh(const FullMu &mu, const Cell &cell, EntityValues &values) const override {
     static const Form hat_integrals = constant_load("", 1);
     hat_integrals.kernel(mu, cell, values.weights.data());
+  }
+  FrictionBound bound(const FullMu &mu) const override {
+    return friction_bound({.adhesion = obstacle_.adhesion}, mu);
   }
   PointConstraint constraint_at(const FullMu &mu, const Point &, const Point &mapped,
                                 const Point &) const override {
@@ -139,10 +146,18 @@ Grid ObstacleInterface::fields(const FullMu &mu, const Vector &u, const Vector &
 
 } // namespace
 
+Term adhesive_load(const Obstacle &obstacle, const Scene &scene) {
+  const auto downwards = [adhesion = obstacle.adhesion](const FullMu &mu, const Point &) {
+    return Point{-adhesion(mu), 0, 0};
+  };
+  return mapped_term(body_load(obstacle.region, downwards, 1, scene.degree));
+}
+
 ContactRecipe obstacle(Obstacle obstacle) {
   ContactRecipe recipe;
   recipe.entities = {InterfaceEntities::Kind::cells, {obstacle.region}};
   recipe.nodal = obstacle.lumped;
+  add_friction({.adhesion = obstacle.adhesion}, recipe);
   recipe.make = [obstacle](const Scene &scene, InterfaceMesh mesh) {
     return std::make_unique<ObstacleInterface>(scene, std::move(mesh), obstacle);
   };

@@ -4,7 +4,11 @@
 #include "rbvi/contact/surfaces.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/element/facets.hpp"
+#include "rbvi/element/lagrange.hpp"
+#include "rbvi/element/quadrature.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace rbvi {
@@ -65,6 +69,28 @@ Facing faced_where_it_is(const RigidSurface &of) {
   return facing;
 }
 
+/// A quadrature point of every facet with the values of its Lagrange functions.
+struct FacetPlace {
+  std::array<double, 4> barycentric;
+  double weight; ///< they sum to 1
+  std::vector<double> values;
+};
+
+std::vector<FacetPlace> facet_places(int dim, int degree) {
+  std::vector<FacetPlace> places;
+  if (dim == 2)
+    for (const auto &[s, weight] : edge_quadrature)
+      places.push_back({{1 - s, s, 0, 0}, weight, {}});
+  else
+    for (const auto &[barycentric, weight] : radon_quadrature())
+      places.push_back({barycentric, weight, {}});
+  for (FacetPlace &place : places) {
+    place.values.resize(static_cast<std::size_t>(nodes_per_cell(dim - 1, degree)));
+    lagrange_values(dim - 1, degree, place.barycentric, place.values);
+  }
+  return places;
+}
+
 } // namespace
 
 RigidContact rigid_contact(const Support &support) {
@@ -92,6 +118,27 @@ RigidContact rigid_contact(const RigidSurface &surface) {
   // Where the body is followed its stress acts on the edges (Nitsche's method).
   if (!surface.large || surface.along_body) rigid.facing.body_normal = surface.body_normal;
   return rigid;
+}
+
+Term adhesive_load(const RigidContact &rigid, const Scene &scene) {
+  const auto kernel = [adhesion = rigid.friction.adhesion, facing = rigid.facing, map = scene.map,
+                       turned = scene.axisymmetric, places = facet_places(scene.dim, scene.degree)](
+                          const FullMu &mu, const Cell &facet, double *values) {
+    const auto dim = static_cast<std::size_t>(facet.dim);
+    const double size = adhesion(mu) * facet_measure(facet.dim, facet.mapped).size;
+    std::fill_n(values, places.front().values.size() * dim, 0.0);
+    for (const FacetPlace &place : places) {
+      const Point x = point_at(facet.reference, place.barycentric, facet.dim),
+                  y = facing.at_rest ? facing.at_rest(mu, x) : map(mu, x),
+                  n = facing.at(mu, {x, {}, y}, {}).normal;
+      const double weight =
+          size * place.weight *
+          circumference(turned, point_at(facet.mapped, place.barycentric, facet.dim));
+      for (std::size_t k = 0; k < place.values.size() * dim; ++k)
+        values[k] += weight * place.values[k / dim] * n[k % dim];
+    }
+  };
+  return mapped_term({"", kernel, rigid.boundary});
 }
 
 double gap_error(const ContactInterface &interface, const Scene &scene, const Facing &facing,

@@ -211,7 +211,7 @@ std::vector<Group> groups_of(const Problem &problem, const std::map<std::string,
   return known;
 }
 
-/// Of a load on cells or facets of this rank.
+/// Of a load on cells or facets of this rank; of one that outputs have in contact the size alone.
 void add_load(const Problem &problem, const FullMu &mu, const Term &load,
               std::vector<Group> &groups) {
   const Mesh &mesh = problem.mesh();
@@ -230,7 +230,7 @@ void add_load(const Problem &problem, const FullMu &mu, const Term &load,
       for (std::size_t i = 0; i < components * static_cast<std::size_t>(nodes) && group.has(number);
            ++i) {
         const double force = theta * values[i] * group.forces.direction[i % components];
-        group.forces.load += force;
+        if (!load.of_contact) group.forces.load += force;
         group.forces.sizes += std::abs(force);
       }
   }
@@ -283,7 +283,7 @@ std::array<double, 2> left_of(const BodyForces &forces, const Outputs &outputs) 
     if (forces.membrane) left += sign * one.normal_force.value_or(0);
     for (std::size_t c = 0; c < along.size(); ++c)
       left += sign * forces.direction[c] * along[c].value_or(0);
-    sizes += one.normal_force.value_or(0) + one.tangential_force.value_or(0);
+    sizes += std::abs(one.normal_force.value_or(0)) + one.tangential_force.value_or(0);
   }
   return {left, sizes};
 }

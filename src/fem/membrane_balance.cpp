@@ -111,6 +111,8 @@ std::optional<MembraneForces> forces_on_membrane(const Problem &problem, const F
   over_ranks(problem.comm(), MPI_SUM, sums);
   forces.load = sums[0];
   forces.contact = outputs.normal_force.value_or(0) / image_count(scene.mirrors);
+  for (const auto &interface : problem.contact().interfaces)
+    forces.contact -= pull_of(*interface, mu, {}).normal_force; // a load
   forces.flux = sums[1] - contact_of_held(problem, mu, lambda);
   forces.sizes = sums[2] + std::abs(forces.contact);
   return forces;

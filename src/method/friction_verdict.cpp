@@ -64,6 +64,8 @@ private:
       predict(i, bound);
     else if (sets_.tangent_at(i) == Tangent::none)
       begin(i);
+    else if (bound == 0 && law.pull > 0)
+      slide(i);
     else
       next = sets_.tangent_at(i);
   }
@@ -83,12 +85,14 @@ private:
     for (int k = 0; k < laws_.tangents; ++k)
       verdict_.next.direction(k, i) = along[k] / size;
   }
+  /// The round-off of bounds, which are differences where nodes adhere; 0: they are none.
+  static double round_off_of(const FrictionBound &law) { return 1e-11 * law.size_at_kinks(0); }
   /// The piece of the law at x_n; at a kink, where two are, that of the sets.
   char piece_of(Index i) const {
     const FrictionBound &law = laws_.bound[i];
     const double x = point_.x[laws_.normal[i]], s = law.value(x);
     const auto [offset, slope] = sets_.piece_of(laws_, i);
-    const bool stays = std::abs(offset + slope * x - s) <= tolerance_ * s;
+    const bool stays = std::abs(offset + slope * x - s) <= tolerance_ * s + round_off_of(law);
     return stays ? sets_.piece[i] : static_cast<char>(law.piece_at(x));
   }
   /// The bound of a node that just came into contact was zero: it slips against its w_tau.
@@ -98,12 +102,24 @@ private:
     verdict_.next.tangent[i] = Tangent::stick;
     if (size > 0) slip(i, w, -size);
   }
+  /// So does one that adheres and is not pressed; where it does not move, as before, or as it
+  /// pulled.
+  void slide(Index i) {
+    const Pair x = tangential(point_.x, i), w = tangential(point_.w, i);
+    verdict_.next.tangent[i] = Tangent::stick;
+    if (size_of(w) > tolerance_ * size_of(tangential(point_.terms, i)))
+      slip(i, w, -size_of(w));
+    else if (sets_.tangent_at(i) == Tangent::slip)
+      slip(i, direction(i), 1);
+    else if (size_of(x) > round_off_of(laws_.bound[i]))
+      slip(i, x, size_of(x));
+  }
   void measure(Index i, double bound) {
     const Pair x = tangential(point_.x, i), w = tangential(point_.w, i);
     const double size = size_of(x), terms = size_of(tangential(point_.terms, i));
-    if (size == 0 && bound == 0) return;
+    if (std::max(size, bound) <= round_off_of(laws_.bound[i])) return;
     violated((size - bound) * std::sqrt(tangential_diagonal(diagonal_, laws_, i)), largest_);
-    if (size < bound * (1 - 1e-14)) {
+    if (size < bound * (1 - 1e-14) - round_off_of(laws_.bound[i])) {
       violated(size_of(w), terms);
       return;
     }
@@ -120,9 +136,10 @@ private:
     const double size = size_of(y);
     // A node that slips does not turn back before it has been stuck: otherwise it may do so
     // forever.
-    const bool slips = sets_.tangent_at(i) == Tangent::slip
-                           ? size >= bound * (1 - 1e-15) && dot(y, direction(i)) > 0
-                           : size > bound + tolerance_ * largest_ / std::sqrt(diagonal);
+    const bool slips =
+        sets_.tangent_at(i) == Tangent::slip
+            ? size >= bound * (1 - 1e-15) - round_off_of(laws_.bound[i]) && dot(y, direction(i)) > 0
+            : size > bound + tolerance_ * largest_ / std::sqrt(diagonal);
     verdict_.next.tangent[i] = Tangent::stick;
     if (!slips) return;
     slip(i, y, size);

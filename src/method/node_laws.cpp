@@ -8,9 +8,11 @@
 namespace rbvi {
 
 void FrictionBound::check() const {
-  const bool valid = std::isfinite(coefficient) && std::isfinite(threshold) && coefficient >= 0 &&
-                     threshold >= 0 && limit >= 0;
-  if (!valid) throw bad_input("coefficient, threshold and limit of friction must not be negative");
+  const bool valid = std::isfinite(coefficient + threshold + pull) && coefficient >= 0 &&
+                     threshold >= 0 && limit >= 0 && pull >= 0;
+  if (!valid)
+    throw bad_input("coefficient, threshold and limit of friction, and adhesion, must not be "
+                    "negative");
 }
 
 std::vector<FrictionBound> bounds_per_node(const std::vector<FrictionBound> &bounds, Index nodes) {

@@ -257,9 +257,9 @@ Grid OnlineSolver::contact_grid(const ReducedAnswer &solution, std::size_t inter
     columns(dofs) = known;
   }
   const Index rows = contact_.interfaces[interface]->dual().size();
-  return contact_.interfaces[interface]->fields(
-      solution.mu, at_interface(solution.mu, columns, interface),
-      multiplier(solution).segment(contact_.first_row[interface], rows), false);
+  return contact_fields(*contact_.interfaces[interface], solution.mu,
+                        at_interface(solution.mu, columns, interface),
+                        multiplier(solution).segment(contact_.first_row[interface], rows));
 }
 
 void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vector &lambda,

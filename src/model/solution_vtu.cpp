@@ -76,8 +76,9 @@ Grid interface_grid(const State &state, const Contact &contact, std::size_t numb
   for (std::size_t k = 0; k < nodes.size(); ++k)
     u.segment(static_cast<Index>(k) * components, components) =
         state.u.segment(nodes[k] * components, components);
-  Grid grid = interface.fields(
-      state.mu, u, state.lambda.segment(contact.first_row[number], interface.dual().size()), false);
+  Grid grid =
+      contact_fields(interface, state.mu, u,
+                     state.lambda.segment(contact.first_row[number], interface.dual().size()));
   name_parameters(state.scene, state.mu, grid);
   grid.contacts = {contact.names[number]};
   return grid;

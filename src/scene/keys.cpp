@@ -142,13 +142,16 @@ const std::vector<CaseKey> all_keys{
      false, "m"},
     {"contact.*", "against", "boundary or table", "another body, or something rigid"},
     {"contact.*", "normal", "auto | body | rigid | deformed",
-     "that of the body at rest, of what is rigid, of the deformed body; auto: rigid, but body where a "
+     "that of the body at rest, of what is rigid, of the deformed body; auto: rigid, but body "
+     "where a "
      "round one at rest meets a disk, sphere or cylinder"},
     {"contact.*", "gap", "closest | ray | vertical",
      "small kinematics: along the normal to the next point, along a ray, to the point below"},
     {"contact.*", "gap_from", "curve | edges",
      "gaps are measured from the circle of the boundary, or from the edges of the mesh"},
     {"contact.*", "friction", "table", "the law; default: none"},
+    {"contact.*", "adhesion", "expression", "a constant pull, a pressure; default: 0", false,
+     "N/m^2"},
     {"contact.*", "kinematics", "small | large",
      "contact of the undeformed body, or where the body now is"},
     {"contact.*", "formulation", "mixed | nitsche", "multipliers, or Nitsche's method"},

@@ -5,8 +5,12 @@
 #include "rbvi/contact/pair.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/elastic_forms.hpp"
+#include "rbvi/element/facet_forms.hpp"
+#include "rbvi/element/scalar_forms.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <optional>
 
 namespace rbvi {
 
@@ -41,6 +45,39 @@ Friction friction_in(Reader &reader, const CaseNode &contact, Scene &scene) {
     friction.limit = coefficient_of(formula_in(reader, *most));
   }
   return friction;
+}
+
+std::function<Coefficient> adhesion_in(Reader &reader, const CaseNode &contact) {
+  const CaseNode *node = contact.find("adhesion");
+  return node == nullptr ? nullptr : coefficient_of(formula_in(reader, *node));
+}
+
+/// Throws bad_input for adhesion with what has none.
+void check_adhesion(const CaseNode &contact, const RigidContact &rigid, const Scene &scene) {
+  const auto refuse = [](const std::string &what) {
+    throw bad_input("adhesion is not for " + what + ": leave out one of them");
+  };
+  if (rigid.facing.follows_state) refuse("kinematics: large");
+  if (choice_or(contact, "formulation", "mixed", {"mixed", "nitsche"}) == "nitsche")
+    refuse("formulation: nitsche");
+  if (rigid.lumped) refuse("lumped: yes");
+  if (rigid.curved && scene.degree == 2 && !scene.curves.empty())
+    refuse("gap_from: curve on a boundary whose circle has another name");
+}
+
+/// The pull of adhesion: exact, `of_one` of a pull of 1 times it, where that does not depend on
+/// parameters; else `pull`.
+void add_pull(Reader &reader, const CaseNode &contact, std::optional<Form> of_one, Term pull,
+              Scene &scene) {
+  if (of_one) {
+    pull =
+        exact_term(*of_one, {factor_of(reader, expression_in(reader, entry(contact, "adhesion")))});
+  } else {
+    pull.parameters.emplace(reader.parameters.size());
+    std::iota(pull.parameters->begin(), pull.parameters->end(), 0);
+  }
+  pull.of_contact = true;
+  scene.f.push_back(std::move(pull));
 }
 
 bool is_large(const CaseNode &node) {
@@ -153,8 +190,8 @@ RigidContact rigid_in(Reader &reader, const CaseNode &node, const CaseNode &agai
     in_space("gap", "vertical");
   }
   check_used(node, "with something rigid",
-             {"at", "against", "normal", "gap", "gap_from", "friction", "kinematics", "formulation",
-              "nitsche_gamma0", "lumped"});
+             {"at", "against", "normal", "gap", "gap_from", "friction", "adhesion", "kinematics",
+              "formulation", "nitsche_gamma0", "lumped"});
   const Side side = side_of(reader, entry(node, "at").value, scene);
   const bool of_curve = choice_or(node, "gap_from", "curve", {"curve", "edges"}) == "curve";
   const std::string gap = choice_or(node, "gap", "closest", {"closest", "ray", "vertical"});
@@ -167,9 +204,22 @@ RigidContact rigid_in(Reader &reader, const CaseNode &node, const CaseNode &agai
                     : gap == "vertical" ? Partner::vertical
                                         : Partner::closest;
   surface.friction = friction_in(reader, node, scene);
+  surface.friction.adhesion = adhesion_in(reader, node);
   surface.lumped = yes_or(node, "lumped", false);
   RigidContact rigid = rigid_contact(surface);
   rigid.curved = !side.at && of_curve;
+  if (!surface.friction.adhesion) return rigid;
+  check_adhesion(node, rigid, scene);
+  std::optional<Form> of_one;
+  if (const CaseNode *plane = against.find("plane"); plane != nullptr &&
+                                                     plane->find("tilt") == nullptr &&
+                                                     !surface.along_body && map_of(reader).empty())
+    of_one = traction_load(
+        rigid.boundary,
+        [n = vector_in(reader, entry(*plane, "normal"))](const FullMu &, const Point &,
+                                                         const Point &) { return n; },
+        scene.components, scene.degree, scene.axisymmetric);
+  add_pull(reader, node, of_one, adhesive_load(rigid, scene), scene);
   return rigid;
 }
 
@@ -219,9 +269,14 @@ ContactRecipe contact_in(Reader &reader, const CaseNode &node, Scene &scene) {
     throw bad_input(above != nullptr ? "'above' is for a membrane: use 'against'"
                                      : "a membrane has contact 'above: HEIGHT'");
   if (above != nullptr) {
-    check_used(node, "of a membrane", {"at", "above", "lumped"});
-    return obstacle({entry(node, "at").value, point_value_of(formula_in(reader, *above)),
-                     yes_or(node, "lumped", true)});
+    check_used(node, "of a membrane", {"at", "above", "adhesion", "lumped"});
+    const Obstacle on{at.value, point_value_of(formula_in(reader, *above)),
+                      yes_or(node, "lumped", true), adhesion_in(reader, node)};
+    std::optional<Form> of_one;
+    if (map_of(reader).empty())
+      of_one = body_load(on.region, everywhere(Point{-1, 0, 0}), 1, scene.degree);
+    if (on.adhesion) add_pull(reader, node, of_one, adhesive_load(on, scene), scene);
+    return obstacle(on);
   }
   if (scene.dim == 3 && !against->is_table())
     throw bad_input("two solids do not meet yet: contact of a solid is with something rigid");

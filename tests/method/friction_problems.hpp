@@ -24,7 +24,7 @@ struct FrictionProblem {
 
 inline double bound_of(const FrictionBound &bound, double normal) {
   const double threshold = normal > 0 || !bound.only_in_contact ? bound.threshold : 0;
-  return std::min(bound.coefficient * normal + threshold, bound.limit);
+  return std::min(bound.coefficient * std::max(normal - bound.pull, 0.0) + threshold, bound.limit);
 }
 
 inline Vector projected(const Vector &y, double radius) {

@@ -62,7 +62,8 @@ Vector uzawa(const FrictionProblem &p, const FrictionBound &bound) {
 }
 
 /// Solves for one state per node (0 open, 1 stick, 2 and 3 slip, to either side; the states of
-/// Tresca in open nodes are 4 stick, 5 and 6 slip) and returns x if it has these states. d = 2.
+/// Tresca in open nodes are 4 stick, 5 and 6 slip; 7 and 8 slip without a
+/// pressure, as they adhere) and returns x if it has these states. d = 2.
 std::optional<Vector> solution_of(const FrictionProblem &p, const FrictionBound &bound,
                                   const std::vector<int> &states) {
   const Index m = p.nodes(), n = 2 * m;
@@ -70,7 +71,7 @@ std::optional<Vector> solution_of(const FrictionProblem &p, const FrictionBound 
   Vector right = Vector::Zero(n);
   for (Index i = 0; i < m; ++i) {
     const int state = states[i];
-    if (state >= 1 && state <= 3) {
+    if ((state >= 1 && state <= 3) || state >= 7) {
       a.row(i) = p.h.row(i);
       right[i] = -p.q[i];
     }
@@ -78,14 +79,16 @@ std::optional<Vector> solution_of(const FrictionProblem &p, const FrictionBound 
       a.row(m + i) = p.h.row(m + i);
       right[m + i] = -p.q[m + i];
     }
-    const double sign = state == 2 || state == 5 ? 1 : -1;
+    const double sign = state == 2 || state == 5 || state == 7 ? 1 : -1;
     if (state == 2 || state == 3) a(m + i, i) = -sign * bound.coefficient;
-    if (state == 2 || state == 3 || state >= 5) right[m + i] = sign * bound.threshold;
+    if (state == 2 || state == 3)
+      right[m + i] = sign * (bound.threshold - bound.coefficient * bound.pull);
+    if (state >= 5) right[m + i] = sign * bound.threshold;
   }
   Vector x = solved(a, right);
   for (Index i = 0; i < m; ++i) {
     const int state = states[i];
-    if (state == 0 || state > 3) x[i] = 0;
+    if (state == 0 || (state > 3 && state < 7)) x[i] = 0;
     if (state == 0) x[m + i] = 0;
   }
   return violation(p, bound, x) < 1e-11 ? std::optional(x) : std::nullopt;
@@ -93,7 +96,7 @@ std::optional<Vector> solution_of(const FrictionProblem &p, const FrictionBound 
 
 std::vector<Vector> all_solutions(const FrictionProblem &p, const FrictionBound &bound) {
   std::vector<Vector> result;
-  const int kinds = bound.threshold > 0 && !bound.only_in_contact ? 7 : 4;
+  const int kinds = bound.pull > 0 ? 9 : bound.threshold > 0 && !bound.only_in_contact ? 7 : 4;
   std::vector<int> states(p.nodes(), 0);
   for (;;) {
     if (const auto x = solution_of(p, bound, states)) result.push_back(*x);
@@ -177,6 +180,73 @@ TEST(Friction, FindsOneOfTheSolutionsThatEnumerationFinds) {
     }
   }
   EXPECT_GT(without_solution, 0);
+}
+
+/// Where nodes adhere, x_n counts from the least pressure, and the bound begins at the pull.
+const FrictionBound adhesive[] = {
+    {.coefficient = 0.3, .pull = 0.5},
+    {.coefficient = 0.8, .pull = 0.1},
+    {.coefficient = 0.3, .threshold = 0.1, .pull = 0.3},
+    {.coefficient = 0.3, .limit = 0.05, .pull = 0.2},
+    {.threshold = 0.2, .pull = 0.3},
+};
+
+TEST(Friction, NodesThatAdhereSlideUntilTheyArePressed) {
+  Random random(23);
+  std::array<int, 3> counts{}; // open, adhering, pressed
+  for (int k = 0; k < 60; ++k)
+    for (const int dim : {2, 3}) {
+      const Index n = dim * (1 + k % 15);
+      const FrictionProblem p{random_positive(random, n, std::pow(10, -(k % 4) * 2)),
+                              random.vector(n), dim};
+      for (const FrictionBound &bound : adhesive) {
+        const FrictionResult result = expect_solved(p, bound);
+        for (Index i = 0; i < p.nodes(); ++i) {
+          ++counts[result.x[i] == 0 ? 0 : result.x[i] <= bound.pull ? 1 : 2];
+          if (result.x[i] <= bound.pull && bound.threshold == 0) {
+            EXPECT_EQ(result.x.segment(p.tangent(i), dim - 1).norm(), 0);
+          }
+        }
+      }
+    }
+  for (const int count : counts)
+    EXPECT_GT(count, 100) << "there is something of each";
+}
+
+TEST(Friction, WithAdhesionFindsOneOfTheSolutionsThatEnumerationFinds) {
+  Random random(24);
+  for (int k = 0; k < 100; ++k) {
+    const Index n = 2 * (1 + k % 3);
+    const FrictionProblem p{random_positive(random, n, 1e-2), random.vector(n), 2};
+    for (const FrictionBound &bound : {adhesive[0], adhesive[1], adhesive[2], adhesive[4]}) {
+      const std::vector<Vector> solutions = all_solutions(p, bound);
+      std::set<Index> given;
+      const FrictionResult result = solve_friction(once(p.h, given), p.q, 2, bound);
+      ASSERT_TRUE(result.converged) << k << " " << result.reason;
+      EXPECT_TRUE(std::any_of(solutions.begin(), solutions.end(), [&](const Vector &x) {
+        return (x - result.x).norm() <= 1e-10 * (1 + x.norm());
+      }));
+    }
+  }
+}
+
+/// At rest the pressure is zero and x_n the pull, to round-off, at every node: neither side of the
+/// kink is tried over and over again.
+TEST(Friction, AtTheKinkOfAdhesionItSettles) {
+  Random random(25);
+  for (const Index m = 12; const int dim : {2, 3}) {
+    FrictionProblem p{random_positive(random, dim * m, 1), Vector::Zero(dim * m), dim};
+    const FrictionBound bound{.coefficient = 0.5, .pull = 0.4};
+    Vector x = Vector::Zero(dim * m);
+    x.head(m).setConstant(bound.pull);
+    p.q = -p.h * x;
+    for (Index i = 0; i < m; ++i)
+      p.q[p.tangent(i)] += 0.1;
+    const FrictionResult result = expect_solved(p, bound);
+    EXPECT_LT((result.x - x).norm(), 1e-12);
+    EXPECT_EQ(result.backup_steps, 0);
+    EXPECT_LT(result.iterations, 10);
+  }
 }
 
 TEST(Friction, WithoutABoundItIsTheNormalProblem) {

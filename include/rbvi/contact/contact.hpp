@@ -56,6 +56,18 @@ NodeLaws laws_at(const Contact &contact, const FullMu &mu);
 std::string failure_at(const Contact &contact, const FullMu &mu, const ContactOperators &operators,
                        const Vector &lambda, const std::string &reason);
 
+/// What adhesion pulls with, beside the multipliers, which count from it (contact/friction.hpp).
+struct Pull {
+  double pressure = 0;     ///< of the pull, >= 0; 0: there is none
+  double normal_force = 0; ///< <= 0
+  Point force{};           ///< on the body; of a membrane zero
+};
+Pull pull_of(ContactInterface &interface, const FullMu &mu, const ContactState &state);
+
+/// ContactInterface::fields, not whole, with the pressure that there is: less the pull.
+Grid contact_fields(ContactInterface &interface, const FullMu &mu, const Vector &u,
+                    const Vector &lambda);
+
 /// Fills the outputs of contact: with several interfaces those that are sums or maxima over them.
 /// See ContactInterface::outputs.
 void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOperators &operators,

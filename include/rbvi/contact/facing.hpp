@@ -77,4 +77,9 @@ struct RigidContact {
   bool curved = false;
 };
 
+/// The load that pulls the boundary onto what it faces at rest: int a n . v, a =
+/// Friction::adhesion, by the quadrature of its multipliers, for the displacement of the scene.
+/// Whoever adds it to one sets Term::of_contact.
+Term adhesive_load(const RigidContact &rigid, const Scene &scene);
+
 } // namespace rbvi

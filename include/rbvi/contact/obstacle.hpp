@@ -6,6 +6,7 @@
 #pragma once
 
 #include "rbvi/contact/entity_sum.hpp"
+#include "rbvi/contact/friction.hpp"
 
 namespace rbvi {
 
@@ -17,9 +18,13 @@ struct Obstacle {
   /// rule of degree 5. Of degree 2 the pressure of vertex quadrature pushes at the vertices alone:
   /// what lies between them is in equilibrium with the load, and u is of order 1 as with degree 1.
   bool lumped = false;
+  std::function<Coefficient> adhesion{}; ///< Friction::adhesion
 };
 
 /// For scalar displacements of degree 1 and 2.
 ContactRecipe obstacle(Obstacle obstacle);
+
+/// The load that pulls the membrane onto it, -int a v, as that of contact/facing.hpp.
+Term adhesive_load(const Obstacle &obstacle, const Scene &scene);
 
 } // namespace rbvi

@@ -55,6 +55,7 @@ struct Term {
   /// Without theta: the parameters (as in Factor) that the kernel depends on; unset: all.
   std::optional<std::vector<int>> parameters = {};
   bool of_imposed = false; ///< a load made by with_imposed_loads (element/imposed.hpp)
+  bool of_contact = false; ///< the pull of adhesion: outputs have it among the forces of contact
 };
 
 using Sum = std::vector<Term>;

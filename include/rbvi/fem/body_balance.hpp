@@ -36,7 +36,7 @@ void check_balance(const Problem &problem, const FullMu &mu, const Outputs &outp
 /// Of all of a membrane, upwards; of the domain, without its images.
 struct MembraneForces {
   double load = 0;
-  double contact = 0; ///< as outputs have it
+  double contact = 0; ///< as outputs have it, without a pull of adhesion, which is a load
   double flux = 0;    ///< what holds it pulls with: the sum of the reactions of its held dofs
   double sizes = 0;   ///< of all terms
   double left() const { return load + contact + flux; }

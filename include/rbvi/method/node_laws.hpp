@@ -12,32 +12,40 @@
 
 namespace rbvi {
 
-/// A law of friction at one mu: the bound s = min(c x_n + t, m) of |x_tau| at a node. All that
-/// solvers ask of a law are its functions: they hold s as a function that is linear piece by piece,
-/// and may jump where contact begins.
+/// A law of friction at one mu: the bound s = min(c (x_n - a)_+ + t, m) of |x_tau| at a node. Where
+/// it adheres x_n is its pressure above the least one, -a, so that x_n >= 0 as without adhesion;
+/// the pull a is a load. All that solvers ask of a law are its functions: they hold s as a function
+/// that is linear piece by piece, and may jump where contact begins.
 struct FrictionBound {
   double coefficient = 0;       ///< c >= 0
   double threshold = 0;         ///< t >= 0
   bool only_in_contact = false; ///< t = 0 while the node carries no pressure
   double limit = std::numeric_limits<double>::infinity(); ///< m >= 0
+  double pull = 0;                                        ///< a >= 0
 
   /// s = offset + slope x_n while the node carries pressure.
   struct Piece {
     double offset, slope;
   };
-  /// Which piece x_n is on, from 0, which begins at x_n = 0: a part of the state of a node that
-  /// slips.
-  int piece_at(double x_n) const { return threshold + coefficient * x_n > limit ? 1 : 0; }
-  Piece piece(int number) const {
-    return number == 0 ? Piece{threshold, coefficient} : Piece{limit, 0};
+  /// Which piece x_n is on: 0, where the pressure is above zero; 1, the limit; 2, below both of
+  /// them. A part of the state of a node that slips.
+  int piece_at(double x_n) const {
+    if (pull > 0 && x_n <= pull) return 2;
+    return threshold + coefficient * (x_n - pull) > limit ? 1 : 0;
   }
+  Piece piece(int number) const {
+    if (number == 0) return {threshold - coefficient * pull, coefficient};
+    return {number == 1 ? limit : std::min(threshold, limit), 0};
+  }
+  /// What terms of s are of, at least, where pieces meet.
+  double size_at_kinks(double s) const { return std::max(s, coefficient * pull); }
   double slope_at(double x_n) const { return piece(piece_at(x_n)).slope; }
-  /// The slope where x_n grows from 0, which no other piece exceeds.
+  /// The slope where the pressure grows from 0, which no other piece exceeds.
   double steepest() const { return coefficient; }
-  /// s, which does not fall as x_n grows; a negative x_n counts as zero.
+  /// s, which does not fall as x_n grows; a negative x_n, or pressure, counts as zero.
   double value(double x_n) const {
     const double at_zero = x_n > 0 || !only_in_contact ? threshold : 0.0;
-    return std::min(coefficient * std::max(x_n, 0.0) + at_zero, limit);
+    return std::min(coefficient * std::max(x_n - pull, 0.0) + at_zero, limit);
   }
   /// Whether s at some x_n is above zero.
   bool acts() const { return limit > 0 && (coefficient > 0 || threshold > 0); }
@@ -52,10 +60,10 @@ struct FrictionBound {
   /// Laws on the way to this one: with this part of its slopes; with s at zero so many times as
   /// high.
   FrictionBound with_slopes(double part) const {
-    return {part * coefficient, threshold, only_in_contact, limit};
+    return {part * coefficient, threshold, only_in_contact, limit, pull};
   }
   FrictionBound with_threshold(double factor) const {
-    return {coefficient, factor * threshold, only_in_contact, limit};
+    return {coefficient, factor * threshold, only_in_contact, limit, pull};
   }
   /// Throws bad_input for a number that is negative or, but for m, not finite.
   void check() const;
