@@ -138,6 +138,8 @@ class Model:
     m.contact(radius=0.8)           pressure, gap, ... along the contact
     m.field(radius=0.8)             displacement and stresses of the bodies
     m.plot("normal_force", x="radius")
+    m.map("normal_force", x="radius", y="friction")    colours and contours over two parameters
+    m.sobol(["normal_force"])       Sobol's indices over the box; m.sobol(...).plot(): bars
     m.openturns("normal_force")     a function of OpenTURNS; m.distribution(): the box
     m.parameters, m.outputs         what there is, with units, boxes and errors
     """
@@ -295,6 +297,40 @@ class Model:
         """The box as a distribution of OpenTURNS: parameters are uniform and independent."""
         from ._openturns import box_of
         return box_of(self)
+
+    @property
+    def samples(self):
+        """The training samples, rows of the parameters; None where the model is an image, which does not
+        have them, or h5py is not installed."""
+        try:
+            import h5py
+            with h5py.File(self._file, "r") as file:
+                return file["training/mu"][()].T
+        except (ImportError, OSError):
+            return None
+
+    def map(self, output, x=None, y=None, samples=True, count=41, axes=None, **parameters):
+        """An output over two parameters as colours and contours, in matplotlib, with the training samples
+        (`samples`: True those of the model, False none, else rows of the parameters); `x`, `y`: the first
+        two parameters without a value among `parameters`. Returns the axes."""
+        from ._figures import parameter_map
+        self._mu(parameters)  # names
+        free = [name for name in self.parameters if name not in parameters and name not in (x, y)]
+        over = [name or free.pop(0) if name or free else None for name in (x, y)]
+        if None in over or over[0] == over[1]:
+            raise BadInput(f"a map is over two parameters; free are {', '.join(filter(None, over)) or 'none'}")
+        self.outputs[output]  # refuses an unknown one
+        points = self.samples if samples is True else samples if samples is not False else None
+        return parameter_map(self, output, over, points, count, axes, parameters)
+
+    def sobol(self, outputs=None, count=4096, seed=1):
+        """Sobol's indices of these outputs (a name, a list; None: all), over the box, in which parameters are
+        uniform and independent, from count (p + 2) random points for p parameters: a Sensitivity."""
+        from ._sensitivity import Sensitivity
+        names = [outputs] if isinstance(outputs, str) else list(outputs or self.outputs)
+        for name in names:
+            self.outputs[name]  # refuses an unknown one
+        return Sensitivity(self, names, count, seed)
 
     def plot(self, output, x=None, count=101, axes=None, **parameters):
         """An output over a parameter, with the band of its largest error, in matplotlib; `x`: the
