@@ -13,7 +13,8 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 import numpy as np  # noqa: E402
-from figure_tools import BLUE, GREY, ORANGE, plt, read_grid  # noqa: E402
+from figure_tools import BLUE, GREY, read_grid  # noqa: E402
+from panels import Curve, Lines, figure_of  # noqa: E402
 
 
 def answer(program, case, mu, folder):
@@ -35,38 +36,43 @@ def spike(x, a):
     return np.arccosh(np.maximum(1, a / np.maximum(np.abs(x), 1e-9)))
 
 
-def draw(axis, title, x, found, formula, reach, colour=BLUE):
-    """Nodes of the answer, and the formula between them; x and stresses as they are."""
-    fine = np.linspace(x.min(), x.max(), 4001)
-    axis.plot(fine, formula(fine), color=GREY, linewidth=1, label="formula")
-    axis.plot(x, found, "o", color=colour, markersize=2.5, label="rbvi")
-    axis.set(title=title, xlim=reach, xlabel="x [m]")
+def panel(title, x, found, formula, reach):
+    """Nodes of the answer between the limits of x, and the formula between them."""
+    fine, inside = np.linspace(max(x.min(), reach[0]), min(x.max(), reach[1]), 4001), (reach[0] <= x) & (x <= reach[1])
+    return Lines(title, "x (m)", "stress (Pa)", [Curve(fine, formula(fine), "formula", GREY, width=1),
+                                                 Curve(x[inside], found[inside], "rbvi, at nodes", BLUE, ".")])
 
 
 def main(program, png):
-    figure, axes = plt.subplots(1, 5, figsize=(13, 2.7), layout="constrained")
-    a = 2 * np.sqrt(0.01 / np.pi)
-    peak = np.sqrt(0.01 / np.pi)
+    a, peak = 2 * np.sqrt(0.01 / np.pi), np.sqrt(0.01 / np.pi)
+
+    def spike_of(slope):
+        return lambda s: np.where(np.abs(s) < 0.01, np.nan, slope * spike(s, 1))
+
     with tempfile.TemporaryDirectory() as folder:
-        x, stress = answer(program, "hertz_line", "force=0.01", folder)
-        draw(axes[0], "cylinder: pressure", x, stress["pressure"], lambda s: peak * ellipse(s, a), (-0.15, 0.15))
+        def pressure(title, case, mu, formula, reach):
+            x, stress = answer(program, case, mu, folder)
+            return panel(title, x, stress["pressure"], formula, reach)
+
         x, stress = answer(program, "partial_slip", f"force={np.pi / 4000},share=0.5", folder)
-        draw(axes[1], "partial slip: shear", x, np.abs(stress["tangential_stress"]),
-             lambda s: 0.00015 * (ellipse(s, 1) - np.sqrt(0.5) * ellipse(s, np.sqrt(0.5))), (-1.3, 1.3), ORANGE)
-        x, stress = answer(program, "hertz_point", f"force={4 / 3 * 0.1**3}", folder)
-        draw(axes[2], "ball: pressure", x, stress["pressure"], lambda s: 0.2 / np.pi * ellipse(s, 0.1), (0, 0.15))
-        x, stress = answer(program, "cone", f"force={0.005 * np.pi}", folder)
-        draw(axes[3], "cone: pressure", x, stress["pressure"], lambda s: 0.005 * spike(s, 1), (0, 1.3))
-        x, stress = answer(program, "wedge", "force=0.01", folder)
-        draw(axes[4], "wedge: pressure", x, stress["pressure"], lambda s: 0.01 / np.pi * spike(s, 1), (0, 1.3))
-    axes[3].set_ylim(0, 0.035)
-    axes[4].set_ylim(0, 0.025)
-    axes[0].set_ylabel("stress [Pa]")
-    axes[0].legend(loc="lower center")
-    figure.savefig(png, dpi=110)
+        panels = [
+            pressure("cylinder: pressure", "hertz_line", "force=0.01", lambda s: peak * ellipse(s, a), (-0.15, 0.15)),
+            panel("partial slip: shear", x, np.abs(stress["tangential_stress"]), lambda s: 0.00015 * (
+                ellipse(s, 1) - np.sqrt(0.5) * ellipse(s, np.sqrt(0.5))), (-1.3, 1.3)),
+            pressure("ball: pressure", "hertz_point", f"force={4 / 3 * 0.1**3}",
+                     lambda s: 0.2 / np.pi * ellipse(s, 0.1), (0, 0.15)),
+            pressure("cone: pressure", "cone", f"force={0.005 * np.pi}", spike_of(0.005), (0, 1.3)),
+            pressure("wedge: pressure", "wedge", "force=0.01", spike_of(0.01 / np.pi), (0, 1.3))]
+    panels[3].ylimits, panels[4].ylimits = (0, 0.035), (0, 0.025)
+    for one in panels[3:]:
+        one.curves[0].x, one.curves[0].y = (values[np.isfinite(one.curves[0].y)] for values in
+                                            (one.curves[0].x, one.curves[0].y))
+    figure, failed = figure_of(panels)
+    figure.savefig(png, dpi=150, bbox_inches="tight", pad_inches=0.02)
+    return "\n".join(failed)
 
 
 if __name__ == "__main__":
     if len(sys.argv) != 3:
         sys.exit(__doc__)
-    main(sys.argv[1], sys.argv[2])
+    sys.exit(main(sys.argv[1], sys.argv[2]))

@@ -7,12 +7,12 @@ is 1 where one differs by more than 1e-6.
 """
 
 import sys
-from math import acosh, cos, log, pi, radians, sin, sqrt
+from math import acosh, cos, log, pi, radians, sin, sqrt, tanh
 from pathlib import Path
 
 import numpy as np
 import yaml
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 from scipy.special import ellipk
 
@@ -22,7 +22,7 @@ HERE = Path(__file__).resolve().parent
 def expected(case, test):
     """Values that case.yaml expects, by output."""
     node = yaml.safe_load((HERE / case / "case.yaml").read_text())["tests"][test]
-    names = {"pi": pi, "cos": cos, "sin": sin, "sqrt": sqrt, "log": log}
+    names = {"pi": pi, "cos": cos, "sin": sin, "sqrt": sqrt, "log": log, "tanh": tanh}
     return {name: eval(str(value).replace("^", "**"), {"__builtins__": {}}, names)  # pylint: disable=eval-used
             for name, value in node["expect"].items()}
 
@@ -68,6 +68,53 @@ def membrane(height):
     a = brentq(lambda a: height - a**2 + 2 * a**2 * log(a), 1e-6, 0.99)
     energy = quad(lambda r: pi * r * 4 * r**2, 0, a)[0] + quad(lambda r: pi * r * (2 * a**2 / r)**2, a, 1)[0]
     return {"normal_force": 4 * pi * a**2, "energy": energy}, {"contact_measure": pi * a**2}
+
+
+def round_membrane(force, a, height):
+    """Force, energy and contact of a round membrane on a flat obstacle from the radius a on, by a given
+    force per area: the slope at r is what the loads between a and r pull, over r. And how far it is off
+    `height` at the rim."""
+    def slope(r):
+        return -quad(lambda s: s * force(s), a, r)[0] / r if r > a else 0
+    def shape(r):
+        return quad(slope, a, r)[0] if r > a else 0
+    work = quad(lambda r: pi * r * (slope(r)**2 - 2 * force(r) * shape(r)), 0, 1, points=[a])[0]
+    pressed = -quad(lambda r: 2 * pi * r * force(r), 0, a)[0]
+    return {"normal_force": pressed, "energy": work}, {"contact_measure": pi * a**2}, shape(1) - height
+
+
+def ceiling(load, height):
+    """The membrane under a ceiling, turned upside down and moved by the height: the rim is lifted."""
+    def of(a):
+        return round_membrane(lambda r: -load, a, height)
+    a = brentq(lambda a: of(a)[2], 0.05, 0.95)
+    forces, contact, _ = of(a)
+    forces["energy"] -= load * pi * height  # of the load, on its way to the ceiling
+    return forces, contact
+
+
+def floor(a):
+    """The membrane on a floor: the radius at which contact ends, from the height of the rim."""
+    def load(r):
+        return -8 * a**2 * (1 + a**2 - r**2) if r < a else 8 * a**2 - 16 * r**2
+    at = brentq(lambda end: round_membrane(load, end, (1 - a**2)**2)[2], 0.3, 0.95)
+    forces, contact, _ = round_membrane(load, at, 0)
+    return forces, contact
+
+
+def bed(height):
+    """A string on a bed of stiffness pi^2, by shooting from the end of contact to where it is held; the
+    membrane is that times cos(pi y), over a width of 1/2."""
+    def free(a):
+        return solve_ivp(lambda x, v: [v[1], pi**2 * v[0]], (a, 1), [height - a**2, -2 * a], rtol=1e-12, atol=1e-13,
+                         dense_output=True)
+    a = brentq(lambda a: free(a).y[0, -1], 0.05, 0.95, xtol=1e-13)
+    beyond = free(a).sol
+    energy = quad(lambda x: (2 * x)**2 + pi**2 * (height - x**2)**2, 0, a)[0]
+    energy += quad(lambda x: beyond(x)[1]**2 + pi**2 * beyond(x)[0]**2, a, 1)[0]
+    across, square = (quad(lambda y, n=n: cos(pi * y)**n, 0, 0.5)[0] for n in (1, 2))
+    force = across * quad(lambda x: 2 + pi**2 * (height - x**2), 0, a)[0]
+    return {"normal_force": force, "energy": square * energy / 2}, {}
 
 
 def rings(delta):
@@ -163,6 +210,12 @@ def values():
     forces, contact = membrane(0.25 * (1 + 2 * log(2)))
     yield "membrane_disk", "forces", forces
     yield "membrane_disk", "contact", contact
+    for case, (forces, contact) in (("membrane_under_ceiling", ceiling(4, 0.75 - 0.5 * log(2))),
+                                    ("membrane_on_floor", floor(0.5)),
+                                    ("string_on_bed", bed(0.25 + tanh(pi / 2) / pi))):
+        yield case, "forces", forces
+        if contact:
+            yield case, "contact", contact
     for test, twist in (("elastic", 1), ("half", 2), ("most", 4)):
         yield "torsion", test, torsion(twist)
     for test, force in (("light", 0.0025), ("heavy", 0.01)):
@@ -197,7 +250,7 @@ def main():
             want = expected(case, test)[name]
             off = abs(value - want) / (abs(want) or 1)
             wrong += off > 1e-6
-            print(f"{case:14} {test:10} {name:20} {want:14.9g} by numbers {value:14.9g}, off by {off:.1e}")
+            print(f"{case:22} {test:10} {name:20} {want:14.9g} by numbers {value:14.9g}, off by {off:.1e}")
     return 1 if wrong else 0
 
 
