@@ -54,16 +54,16 @@ def draw_marks(axis, rows, time, error, filled):
 
 
 def name_rows(axis, rows, time, error):
-    """Words beside the marks: the sizes of a model, cold or warm of a solver. Of marks that lie
-    together, the last in the table is named."""
+    """Words beside the marks: the sizes of a model, from where a solver starts. Of marks that lie
+    together, and of those of one name, the last in the table is named."""
     named = []
     for row, t, e in reversed(list(zip(rows, np.log10(time), np.log10(error)))):
         words = row["method"].split(" ", 1)[-1].strip("()")
-        together = any(abs(t - at) < 1 and abs(e - high) < 2 for at, high in named)
+        together = any(words == other or (abs(t - at) < 1 and abs(e - high) < 2) for at, high, other in named)
         if not np.isfinite(e) or together or words in ("interpolation", "snapshot"):
             continue
-        right_is_taken = any(0 < at - t < 0.9 and abs(e - high) < 0.5 for at, high in named)
-        named.append((t, e))
+        right_is_taken = any(0 < at - t < 0.9 and abs(e - high) < 0.5 for at, high, _ in named)
+        named.append((t, e, words))
         axis.annotate(words, (10 ** t, 10 ** e), xytext=(-6 if right_is_taken else 6, 3),
                       ha="right" if right_is_taken else "left", textcoords="offset points",
                       color=GREY)

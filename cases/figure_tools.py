@@ -241,13 +241,6 @@ def label_plane(axis, names="xy"):
     axis.set_ylabel(in_length(names[1]))
 
 
-def step_values(axis, grid, name, **style):
-    """A field along a contact curve: by steps where it is constant on the edges."""
-    if name in grid.of_cells:
-        return axis.stairs(grid.of_cells[name], grid.points[:, 0], baseline=None, **style)
-    return axis.plot(grid.points[:, 0], grid.of_nodes[name], **style)[0]
-
-
 def clip_at_floor(axis):
     """Zeros and round-off of a logarithmic axis are drawn at the floor, and a line says so."""
     clipped = False
@@ -300,45 +293,3 @@ def log_axis(axis, xlabel, ylabel, title):
     axis.set_xlabel(xlabel)
     axis.set_ylabel(ylabel)
     axis.set_title(title, loc="left")
-
-
-def draw_constants(axis, x, beta):
-    """The four constants against x; one that vanishes is named instead."""
-    curves = (("beta_hf", r"$\beta_{HF}$", GREY, "-"), ("beta_on", r"$\beta_{on}$", GREEN, "-"),
-              ("beta_off", r"$\beta_{off}$", BLUE, "--"),
-              ("beta_dec", r"$\beta_{dec}$", ORANGE, ":"))
-    order = np.argsort(x)
-    for column, label, colour, style in curves:
-        if beta[column].max() > 1e-9:
-            axis.plot(x[order], np.maximum(beta[column][order], 1e-9), style, color=colour,
-                      label=label)
-        else:
-            axis.text(0.97, 0.03, label + " below 1e-9", color=colour, ha="right",
-                      transform=axis.transAxes)
-
-
-def draw_greedy(axes, tight, loose, colour, label, floor):
-    """Largest sigma and smallest beta_off along the supremizers; a dot where a looser run ends.
-    Values of beta below `floor` are drawn there."""
-    for axis, column, least in zip(axes, ("sigma_max", "beta_min"), (1e-8, floor)):
-        axis.plot(tight["S"], np.maximum(tight[column], least), color=colour, label=label)
-        axis.plot(loose["S"][-1], loose[column][-1], "o", color=colour)
-
-
-def draw_tolerances(axis, pair, runs, colour, over=None):
-    """beta_off at the validation parameters with the supremizers of a tight and of a loose tolerance:
-    `runs` has the run and its summary of both. Over a parameter, or sorted."""
-    for tolerance, style in (("tight", "-"), ("loose", "--")):
-        run, sizes = runs[tolerance]
-        beta = table(run, "infsup.csv")
-        x = beta[over] if over else np.argsort(np.argsort(beta["beta_off"])).astype(float)
-        order = np.argsort(x)
-        axis.plot(x[order], beta["beta_off"][order], style, color=colour,
-                  label=f"({pair[0]}, {pair[1]}), {tolerance}: S = {sizes['S']:.0f}")
-
-
-def end_tolerances(axis, xlabel):
-    axis.set_xlabel(xlabel)
-    axis.set_ylabel("inf-sup constant (-)")
-    axis.set_title(r"$\beta_{off}$, both tolerances", loc="left")
-    axis.legend(loc="upper left", bbox_to_anchor=(1, 1), title="(N, R)")

@@ -42,6 +42,7 @@ class Lines:
     log_x: bool = False
     floor: float = ZERO
     right: str = ""  # label of the axis at the right
+    ylimits: tuple = ()  # of the axis at the left, where they are not those of the curves
     least: float = 0
     projection = None
     ratio = 0.75
@@ -51,8 +52,8 @@ class Lines:
         return [curve.label for curve in self.curves if not np.any(np.isfinite(shown(curve, self)[0]))]
 
     def empty(self):
-        return (len(self.spent()) == len(self.curves) or
-                max(np.nanmax(np.abs(curve.y)) for curve in self.curves) < self.least)
+        sizes = [np.max(np.abs(curve.y), where=np.isfinite(curve.y), initial=0) for curve in self.curves]
+        return len(self.spent()) == len(self.curves) or max(sizes) < self.least
 
     def draw(self, _, axis):
         axes = {False: axis, True: axis.twinx() if self.right else axis}
@@ -77,6 +78,8 @@ class Lines:
             axes[True].spines["right"].set_visible(True)
             axes[True].grid(False)
         whole = all(np.array_equal(curve.x, np.round(curve.x)) for curve in self.curves)
+        if self.ylimits:
+            axis.set_ylim(*self.ylimits)
         if self.log_x:
             decades(axis)
         else:
@@ -332,7 +335,7 @@ def with_values(panels):
             words[f"{panel.title}: left out, round-off"] = None
         elif isinstance(panel, Lines):
             words.update({f"{', '.join(filter(None, [panel.title, label]))}: left out, below {panel.floor:.0e}": None
-                          for label in panel.spent()})
+                          for label in filter(None, panel.spent())})
     return [panel for panel in panels if not panel.empty()], list(words)
 
 

@@ -9,7 +9,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from figure_tools import BLUE, GREEN, ORANGE, plt
+from figure_tools import BLUE, GREEN, ORANGE
+from panels import Drawn, figure_of
 
 SNAPSHOTS = np.array([[3, 0], [np.sqrt(0.75), 0.5], [1, 2 * np.sqrt(0.75)]])
 
@@ -51,21 +52,23 @@ def draw(axis, modified):
         arrow(axis, snapshot, snapshot - part, ORANGE, 1.6)
         axis.annotate(r"$-\Upsilon_2$", snapshot - part / 2, (0, 5), textcoords="offset points",
                       color=ORANGE, ha="center")
-    for vector, name, way in ((first, "1", (0, -13)), (second, "2", (-16, 2))):
+    for vector, name, way in ((first, "1", (0, -13)), (second, "2", (-10, 4))):
         arrow(axis, (0, 0), vector, GREEN, 2.4)
         axis.annotate(rf"$\nu_{name}$", vector, way, textcoords="offset points", color=GREEN, ha="center")
-    cosine = first @ second
-    axis.set_title(f"{'mCPG' if modified else 'CPG'}: condition of the Gram matrix "
-                   f"{(1 + cosine) / (1 - cosine):.0f}", loc="left")
     axis.set(xlim=(-0.35, 3.4), ylim=(-0.35, 2.2), aspect="equal", xlabel="first entry (-)",
              ylabel="second entry (-)")
 
 
+def condition(modified):
+    (first, second), *_ = steps(modified)
+    return (1 + first @ second) / (1 - first @ second)
+
+
 def main(png):
-    figure, axes = plt.subplots(1, 2, figsize=(8.4, 3.4), constrained_layout=True)
-    for axis, modified in zip(axes, (False, True)):
-        draw(axis, modified)
-    figure.savefig(png, dpi=120)
+    figure, _ = figure_of([Drawn(f"{name}: Gram condition {condition(modified):.0f}",
+                                 lambda _, axis, modified=modified: draw(axis, modified), ratio=0.9)
+                           for name, modified in (("CPG", False), ("mCPG", True))])
+    figure.savefig(png, dpi=150, bbox_inches="tight", pad_inches=0.02)
     print(f"wrote {png}")
 
 

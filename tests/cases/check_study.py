@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Runs the study of a case on few parameters: every figure is there, the numbers of every table are
-those of studies/NAME.md, the constants come in their order, and what is recommended is more accurate
-than what was published.
+"""Runs the study of a case on few parameters: every figure is there and can be printed, the numbers of
+every table are those of studies/NAME.md, the constants come in their order, and what is recommended is
+more accurate than what was published.
 
     check_study.py BIN CASE_DIR OUT [SCRIPT] [--write]     SCRIPT: of CASE_DIR/study, else study.py
 
@@ -11,10 +11,17 @@ compared, nor those at round-off; the others are to a digit of two.
 
 import csv
 import re
+import runpy
 import shutil
-import subprocess
 import sys
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "cases"))
+
+import figure_tools
+from check_print import problems
 
 FEW = {"membrane_obstacle": ["-train", "grid:3,2,2", "-valid", "random:2:1"],
        "two_disks": ["-train", "grid:5", "-valid", "random:1:1"],
@@ -113,13 +120,32 @@ def check_pairs(tables):
         assert float(row["queries, on"]) > float(row["queries, off"]), row
 
 
+def run_study(script, *arguments):
+    """Runs it here, so that figures can be measured: a line for each thing that a printed page would show."""
+    wrong, write = [], figure_tools.write
+
+    def measured(figure, path):
+        wrong.extend(f"{path.name}: {line}" for line in problems(figure, True))
+        write(figure, path)
+
+    figure_tools.write = measured
+    sys.path.insert(0, str(script.parent))
+    sys.argv = [str(script), *map(str, arguments)]
+    with redirect_stdout(StringIO()):
+        try:
+            runpy.run_path(str(script), run_name="__main__")
+        except SystemExit as stopped:
+            if stopped.code:
+                raise
+    return wrong
+
+
 def main(binaries, case, out, script="study.py", *words):
     if script == "--write":
         script, words = "study.py", (script,)
     name = case.name if script == "study.py" else f"{case.name}/{Path(script).stem}"
     shutil.rmtree(out, ignore_errors=True)
-    subprocess.run([sys.executable, case / "study" / script, binaries, out, *FEW[name]], check=True,
-                   stdout=subprocess.DEVNULL)
+    assert not (wrong := run_study(case / "study" / script, binaries, out, *FEW[name])), "\n".join(wrong)
     tables = (out / "tables.md").read_text()
     if script == "study.py":
         assert "Order of the constants: 0 exceptions" in tables, tables

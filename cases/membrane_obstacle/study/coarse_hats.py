@@ -29,7 +29,7 @@ def offline(programs, options, out):
     if done.returncode != 0:
         sys.exit(done.stderr)
     modes, supremizers, hats, free = (int(re.search(pattern, done.stdout).group(1)) for pattern in (
-        r"N = (\d+)", r"S = (\d+)", r"R = (\d+) generators", r"\+ (\d+) free modes"))
+        r"N = (\d+)", r"S = (\d+)", r"R = (\d+) functions >= 0", r"\+ (\d+) of either sign"))
     seconds = float(re.search(r"^  total +([\d.]+)", done.stdout, re.MULTILINE).group(1))
     return (modes + supremizers, hats + free), (out / "model.h5").stat().st_size / 1e6, seconds
 

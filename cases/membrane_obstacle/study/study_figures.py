@@ -5,10 +5,11 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_constants, draw_greedy,
-                          draw_tolerances, end_tolerances, history, log_axis, plt, save, table)
+from figure_tools import BLUE, GREEN, GREY, ORANGE, PURPLE, history, table
 from figures import contact_regions, mesh_quality_panels
-from panels import Triangles, save_panels
+from panels import Curve, Drawn, Lines, Triangles, legend_below, save_panels
+from study_panels import (above, along_size, constants_panel, greedy_panels, share_decades, sorted_places,
+                          tolerance_panel)
 
 import numpy as np
 
@@ -16,163 +17,166 @@ STYLES = {"cpg": (ORANGE, "--"), "mcpg": (BLUE, "-"), "mcpg, tolerance 0.001": (
           "angle_greedy": (PURPLE, "--"), "nmf": (GREY, "-"), "nodal": ("black", ":"),
           "hybrid": (GREEN, "-")}
 PAIRS = ((19, 50), (51, 70), (89, 50))
-
-
-def same_decades(axes):
-    """One range for all, in whole decades."""
-    values = np.concatenate([line.get_ydata() for axis in axes for line in axis.lines])
-    low, high = np.log10(np.min(values)), np.log10(np.max(values))
-    for axis in axes:
-        axis.set_ylim(10 ** np.floor(low), 10 ** np.ceil(high))
+MAPS = {"similarity": True, "graded": False}  # whether marks are filled
+FLOOR = 1e-8
 
 
 def bases(runs, directory):
     """Convergence on the training set, similarity map."""
-    figure, axes = plt.subplots(1, 4, figsize=(13, 3.2), constrained_layout=True)
-    pod = history(runs["similarity", "mcpg", "offline"], "pod/error")
-    pod = pod[pod > 1e-14]
-    axes[0].plot(np.arange(len(pod)), pod, color=GREY)
-    log_axis(axes[0], "modes N", "relative error", "displacement, e_POD")
+    errors, orthogonality, condition = [], [], []
     for name, (colour, style) in STYLES.items():
         run = runs.get(("similarity", "fine " + name))
         if run is None:
             continue
         size, error = history(run, "cone/size"), history(run, "cone/error")
         first = 1 if name in ("nmf", "hybrid") else 0  # no size in between
-        marks = "." if first else ""
-        axes[1].plot(size[first:], np.maximum(error[first:], 1e-8), style + marks, color=colour,
-                     label=name)
-        axes[3].plot(size[1:], history(run, "cone/gram_condition"), style, color=colour)
+        errors.append(above(FLOOR, Curve(size[first:], error[first:], name, colour, ("." if first else "") + style)))
+        condition.append(Curve(size[1:], history(run, "cone/gram_condition"), name, colour, style))
         if name in ("cpg", "mcpg"):
-            axes[2].plot(size[1:], history(run, "cone/e_orth"), style, color=colour)
-    log_axis(axes[1], "dual functions R", "largest relative error", "multiplier, training set")
-    log_axis(axes[2], "generators R", "distance to the cone before", "e_orth")
-    log_axis(axes[3], "dual functions R", "condition number", "Gram matrix")
-    axes[1].legend(fontsize=7)
-    save(figure, directory, "bases.png")
+            orthogonality.append(Curve(size[1:], history(run, "cone/e_orth"), name, colour, style))
+    pod = along_size(history(runs["similarity", "mcpg", "offline"], "pod/error"), "", GREY, least=1e-14)
+    functions, error = "functions of the dual basis R", "largest relative error (-)"
+    save_panels(directory, "bases.png", [
+        Lines("displacement in its modes, POD", "modes N", "relative error (-)", [pod], log=True, floor=1e-14),
+        Lines("multiplier, training set", functions, error, errors, log=True, floor=FLOOR),
+        Lines("new functions (e_orth)", functions, "distance to the cone before (-)", orthogonality, log=True),
+        Lines("condition of the dual basis", functions, "of its Gram matrix (-)", condition, log=True)],
+        "similarity map")
+
+
+def draw_floors(found, _, axis):
+    """A row for each dual basis: marks of three errors on each map. `found`: (map, basis) -> summary."""
+    kinds = (("lambda_floor_max", ORANGE, "o", "best of the basis"),
+             ("lambda_max", BLUE, "s", "multiplier"), ("u_max", GREEN, "^", "displacement"))
+    handles = {}
+    for row, name in enumerate(STYLES):
+        for (disc_map, filled), shift in zip(MAPS.items(), (-0.17, 0.17)):
+            own = found[disc_map, name]
+            axis.plot([max(own["lambda_floor_max"], FLOOR), own["lambda_max"]], [row + shift] * 2, color="#bbbbbb")
+            for column, colour, mark, words in kinds:
+                handles[f"{words}, {disc_map}"], = axis.plot(
+                    max(own[column], FLOOR), row + shift, mark, color=colour, label=f"{words}, {disc_map}",
+                    fillstyle="full" if filled else "none")
+    axis.set_xscale("log")
+    axis.set_xlabel("largest relative error (-)")
+    sizes = [" and ".join(f"{found[disc_map, name]['R']:.0f}" for disc_map in MAPS) for name in STYLES]
+    axis.set_yticks(range(len(STYLES)), [f"{name.replace(', ', chr(10))}\nR = {size}" for name, size in
+                                         zip(STYLES, sizes)])
+    axis.invert_yaxis()
+    legend_below(axis, list(handles.values()))
 
 
 def floors(runs, rows_of, directory):
     """What each dual basis allows and what its model reaches, over the validation set."""
-    figure, axes = plt.subplots(1, 2, figsize=(10, 3.4), constrained_layout=True)
-    for axis, disc_map in zip(axes, ("similarity", "graded")):
-        for k, name in enumerate(STYLES):
-            s = rows_of(runs[disc_map, name, "offline"])
-            axis.plot([k, k], [max(s["lambda_floor_max"], 1e-7), s["lambda_max"]], color="#bbbbbb")
-            axis.plot(k, max(s["lambda_floor_max"], 1e-7), "o", color=ORANGE,
-                      label="floor: projection alone" if k == 0 else None)
-            axis.plot(k, s["lambda_max"], "s", color=BLUE, label="reached" if k == 0 else None)
-            axis.plot(k, s["u_max"], "^", color=GREEN, label="displacement" if k == 0 else None)
-        log_axis(axis, "", "largest relative error", f"{disc_map} map, 64 validation mu")
-        axis.set_xticks(range(len(STYLES)), [f"{name.replace(', ', chr(10))}\nR = "
-                        f"{rows_of(runs[disc_map, name, 'offline'])['R']:.0f}" for name in STYLES],
-                        fontsize=7)
-    axes[0].legend(fontsize=8)
-    same_decades(axes)
-    save(figure, directory, "floors.png")
+    found = {(disc_map, name): rows_of(runs[disc_map, name, "offline"]) for disc_map in MAPS for name in STYLES}
+    low = [" and ".join(name for name in STYLES if found[disc_map, name]["lambda_floor_max"] < FLOOR)
+           for disc_map in MAPS]
+    words = [f"{disc_map}: the best of {names} is below {FLOOR:.0e}, drawn there" for disc_map, names in
+             zip(MAPS, low) if names]
+    save_panels(directory, "floors.png", [Drawn("validation set; R on both maps", lambda *at: draw_floors(found, *at),
+                                                ratio=1.7)], "\n".join(words))
 
 
-def greedy(runs, rows_of, directory):
+def bounds_panel(disc_map, runs):
+    """beta_off / beta_on and its two bounds along the supremizers."""
+    curves = []
+    for pair, colour in zip(PAIRS, (BLUE, ORANGE, GREEN)):
+        steps = table(runs[disc_map, pair, "tight"], "stability.csv")
+        curves += [Curve(steps["S"], steps["ratio_min"], "", colour),
+                   Curve(steps["S"], steps["bound_min"], "", colour, "--"),
+                   Curve(steps["S"], np.where(steps["classic_min"] > 0, steps["classic_min"], np.nan), "", colour, ":")]
+    curves = [curve for curve in curves if np.any(np.isfinite(curve.y))]
+    for curve in curves:  # a bound that does not hold yet is no answer that is missing
+        held = np.isfinite(curve.y)
+        curve.x, curve.y = curve.x[held], curve.y[held]
+    return Lines(rf"$\beta_{{off}}/\beta_{{on}}$, {disc_map}; dashed: $\sqrt{{1-\sigma^2}}$; dotted: (2.24)",
+                 "supremizers S", "ratio (-)", curves, ylimits=(0, 1.05))
+
+
+def greedy(runs, directory):
     """sigma and beta along the projected greedy; the two bounds; beta_off at both tolerances."""
-    figure, axes = plt.subplots(2, 4, figsize=(17, 6), constrained_layout=True)
-    for row, disc_map in zip(axes, ("similarity", "graded")):
+    panels = []
+    for disc_map in MAPS:
+        along, beside = [], []
         for pair, colour in zip(PAIRS, (BLUE, ORANGE, GREEN)):
-            steps = table(runs[disc_map, pair, "tight"], "stability.csv")
-            loose = table(runs[disc_map, pair, "loose"], "stability.csv")
-            draw_greedy(row[:2], steps, loose, colour, f"({pair[0]}, {pair[1]})", 1e-16)
-            row[2].plot(steps["S"], steps["ratio_min"], color=colour)
-            row[2].plot(steps["S"], steps["bound_min"], "--", color=colour)
-            holds = steps["classic_min"] > 0
-            row[2].plot(steps["S"][holds], steps["classic_min"][holds], ":", color=colour)
-            draw_tolerances(row[3], pair, {
-                tolerance: (runs[disc_map, pair, tolerance], rows_of(runs[disc_map, pair, tolerance]))
-                for tolerance in ("tight", "loose")}, colour)
-        end_tolerances(row[3], "validation parameters, sorted")
-        log_axis(row[0], "supremizers", r"largest $\sigma$", f"{disc_map}; dots: loose tolerance")
-        log_axis(row[1], "supremizers", r"smallest $\beta_{off}$", "inf-sup constant")
-        row[2].set_ylim(0, 1.05)
-        row[2].set_xlabel("supremizers")
-        row[2].set_title(r"$\beta_{off}/\beta_{on}$; -- $\sqrt{1-\sigma^2}$; ... (2.24)", loc="left")
-        row[0].legend(title="(N, R)")
-    save(figure, directory, "pga.png")
+            own = {kind: runs[disc_map, pair, kind] for kind in ("tight", "loose")}
+            along.append((f"N = {pair[0]}, R = {pair[1]}", colour,
+                          *(table(run, "stability.csv") for run in own.values())))
+            beta = [table(run, "infsup.csv")["beta_off"] for run in own.values()]
+            beside.append((colour, *((sorted_places(values), values) for values in beta)))
+        panels += [*greedy_panels(disc_map, along), bounds_panel(disc_map, runs),
+                   tolerance_panel(disc_map, "validation parameters, sorted (number)", beside)]
+    save_panels(directory, "pga.png", panels)
 
 
 def constants(runs, directory):
-    figure, axes = plt.subplots(2, 3, figsize=(12, 6), constrained_layout=True)
-    for row, disc_map in zip(axes, ("similarity", "graded")):
-        for axis, pair in zip(row, PAIRS):
+    panels = []
+    for disc_map in MAPS:
+        for pair in PAIRS:
             beta = table(runs[disc_map, pair, "loose"], "infsup.csv")
-            rank = np.argsort(np.argsort(beta["beta_on"])).astype(float)
-            draw_constants(axis, rank, beta)
-            log_axis(axis, "validation parameters, sorted", "inf-sup constant",
-                     f"{disc_map}, (N, R) = {pair}")
-    axes[0, 0].legend()
-    same_decades(axes.ravel())
-    save(figure, directory, "infsup.png")
+            panels.append(constants_panel(f"{disc_map}, N = {pair[0]}, R = {pair[1]}",
+                                          "validation parameters, sorted (number)",
+                                          sorted_places(beta["beta_on"]), beta))
+    save_panels(directory, "infsup.png", share_decades(panels))
 
 
 def modes(runs, rows_of, directory):
     """Error of u and lambda over N."""
-    figure, axes = plt.subplots(1, 4, figsize=(13, 3.2), constrained_layout=True)
-    for pair, disc_map in ((axes[:2], "similarity"), (axes[2:], "graded")):
-        for axis, field in zip(pair, ("u", "lambda")):
+    panels = []
+    for disc_map in MAPS:
+        for field, words in (("u", "displacement"), ("lambda", "multiplier")):
+            curves = []
             for name, (colour, style) in STYLES.items():
                 rows = [rows_of(runs[disc_map, name, key]) for key in (19, 51, "offline")]
-                axis.plot([row["N"] for row in rows], [row[field + "_max"] for row in rows],
-                          style, marker="o", color=colour, label=name)
-            log_axis(axis, "modes N", "largest relative error", f"{field}, {disc_map}")
-    axes[3].legend(fontsize=7)
-    same_decades(axes)
-    save(figure, directory, "modes.png")
+                curves.append(Curve(np.array([row["N"] for row in rows]),
+                                    np.array([row[field + "_max"] for row in rows]), name, colour, "o" + style))
+            panels.append(Lines(f"{words}, {disc_map}", "modes N", "largest relative error (-)", curves, log=True))
+    save_panels(directory, "modes.png", share_decades(panels))
 
 
 def pairs(runs, directory):
-    """Error of lambda over (N, R): decorrelated and online-enriched, similarity map."""
-    names = ("cpg", "mcpg", "angle_greedy", "hybrid")
-    figure, axes = plt.subplots(2, len(names), figsize=(13, 6), constrained_layout=True)
-    for column, name in zip(axes.T, names):
+    """Errors over (N, R): the modes alone and with the supremizers of each pair, similarity map."""
+    panels, words = [], ["similarity map; circles: multiplier, triangles: displacement"]
+    for name in ("cpg", "mcpg", "angle_greedy", "hybrid"):
         data = table(runs["similarity", name, "offline"], "error_map.csv")
-        for axis, kind, title in zip(column, (0, 1), ("decorrelated", "online-enriched")):
+        for kind, title in ((0, f"{name}, modes alone"), (1, f"{name}, with supremizers")):
             rows = data[(data["enriched"] == kind) & np.isfinite(data["lambda_max"])]
+            curves = []
             for n, colour in zip(np.unique(data["N"]), (GREY, ORANGE, GREEN, BLUE)):
                 part = rows[rows["N"] == n]
-                axis.plot(part["R"], part["lambda_max"], "o-", color=colour, label=f"N = {n:.0f}")
-                axis.plot(part["R"], part["u_max"], "^:", color=colour)
-            if len(rows) == 0:
-                axis.text(0.5, 0.5, "no answer somewhere\nfor every pair", ha="center",
-                          transform=axis.transAxes)
-            log_axis(axis, "dual functions R", "largest relative error", f"{name}, {title}")
-    axes[1, 0].legend(title="o lambda, ^ u", fontsize=7)
-    same_decades(axes.ravel())
-    save(figure, directory, "pairs.png")
+                if len(part) > 0:
+                    curves += [Curve(part["R"], part["lambda_max"], f"N = {n:.0f}", colour, "o-"),
+                               Curve(part["R"], part["u_max"], "", colour, "^:")]
+            if curves:
+                panels.append(Lines(title, "functions of the dual basis R", "largest relative error (-)", curves,
+                                    log=True))
+            else:
+                words.append(f"{title}: left out, no pair has all its answers")
+    save_panels(directory, "pairs.png", share_decades(panels), "\n".join(words))
 
 
 def pressures(runs, directory):
     """Pressure and its error at the worst validation parameter, mCPG and hybrid."""
-    figure, axes = plt.subplots(2, 3, figsize=(12, 6.4), constrained_layout=True)
-    for row, name in zip(axes, ("mcpg", "hybrid")):
+    panels = []
+    for name in ("mcpg", "hybrid"):
         run = runs["similarity", name, "offline"]
         data = table(run, "worst_pressure.csv")
         (region,) = contact_regions(run, data)
         error = data["reduced"] - data["high_fidelity"]
         top, bound = data["high_fidelity"].max(), np.abs(error).max()
-        panels = [Triangles(f"{name}: {column.replace('_', '-')}", region.points, region.cells,
-                            region.at_nodes(data[column]), "pressure (Pa)", (0, top)) for column in ("high_fidelity", "reduced")]
-        panels.append(Triangles(f"{name}: error", region.points, region.cells, region.at_nodes(error),
-                                "error of the pressure (Pa)", (-bound, bound), "RdBu_r"))
-        for axis, panel in zip(row, panels):
-            panel.draw(figure, axis)
-            axis.set_title(panel.title, loc="left")
-    save(figure, directory, "pressure.png")
+        panels += [Triangles(f"{name}: reduced", region.points, region.cells, region.at_nodes(data["reduced"]),
+                             "pressure (Pa)", (0, top)),
+                   Triangles(f"{name}: error, at most {bound / top:.0e} of the peak", region.points, region.cells,
+                             region.at_nodes(error), "reduced less high-fidelity (Pa)", (-bound, bound), "RdBu_r")]
+    save_panels(directory, "pressure.png", panels)
 
 
 def draw_all(runs, summary, directory):
     bases(runs, directory)
     floors(runs, summary, directory)
-    greedy(runs, summary, directory)
+    greedy(runs, directory)
     constants(runs, directory)
     modes(runs, summary, directory)
     pairs(runs, directory)
     pressures(runs, directory)
-    save_panels(directory, "mesh_quality.png",
-                mesh_quality_panels(runs["similarity", "mcpg", "offline"]))
+    save_panels(directory, "mesh_quality.png", mesh_quality_panels(runs["similarity", "mcpg", "offline"]))

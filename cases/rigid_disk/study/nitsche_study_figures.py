@@ -5,10 +5,11 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, history, log_axis, plt,
-                          read_grid, save)
+from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, history, in_length,
+                          read_grid)
 from nitsche_study import EIM_ERRORS, GAMMA0, GENERATORS, LAWS, RADII, RULES, SIZES, error_map
-from solution_figures import draw_bodies
+from panels import Curve, Lines, save_panels
+from study_panels import along_size, level, over_disk, pale, share_decades
 from study_tools import rows_of, summary
 
 import numpy as np
@@ -46,159 +47,120 @@ def curve(study, law, radius):
 
 def deformed(study, directory):
     """Deformed half-disks on the rigid disk (figure 4.2)."""
-    figure, axes = plt.subplots(1, 2, figsize=(10, 4.2), constrained_layout=True, sharex=True,
-                                sharey=True)
-    for axis, radius in zip(axes, (RADII[0], RADII[-1])):
-        angle = np.linspace(0, np.pi, 200)
-        bottom = -float(radius) - INITIAL_GAP - 1
-        axis.fill(np.cos(angle), bottom + np.sin(angle), color=GREY, alpha=0.4, linewidth=0)
-        draw_bodies(figure, axis, study.out / "solves" / f"none_{radius}.vtu")
-        axis.set_title(f"radius {radius} m", loc="left")
-    axes[0].set_xlim(-1.35, 1.35)
-    axes[0].set_ylim(-1.9, 0)
-    save(figure, directory, "deformed.png")
+    panels = []
+    for radius in (RADII[0], RADII[-1]):
+        reach = 1.05 * float(radius)
+        panels.append(over_disk(f"radius {radius} m", study.out / "solves" / f"none_{radius}.vtu",
+                                (0, -float(radius) - INITIAL_GAP - 1), ((-reach, reach), (-1.4 * reach, 0.05 * reach))))
+    save_panels(directory, "deformed.png", panels)
 
 
 def normal_stress(study, directory):
     """Normal stress, its Alart-Curnier counterpart, and the gap (figure 4.3)."""
-    figure, axes = plt.subplots(2, 3, figsize=(13, 5.4), constrained_layout=True, sharex=True,
-                                sharey="row")
-    for (top, bottom), radius in zip(axes.T, RADII):
+    panels = []
+    for radius in RADII:
         found = curve(study, "none", radius)
-        top.plot(found.x, found.contact, color=ORANGE, linewidth=4, alpha=0.5,
-                 label=r"$\min(P_n, 0)$")
-        top.plot(found.x, found.sigma_n, color=BLUE, linewidth=1, label=r"$\sigma_n(u)$")
-        bottom.plot(found.x, -1e3 * found.gap, color=BLUE)
-        top.set_title(f"stresses (Pa), radius {radius} m", loc="left")
-        bottom.set_title(r"$u_n - g$ (mm)", loc="left")
-        bottom.set_xlabel("x (m)")
-        bottom.set_xlim(-SHOWN, SHOWN)
-        bottom.set_ylim(-10, 1)
-    axes[0, 0].legend(fontsize=8)
-    save(figure, directory, "normal.png")
+        x, shown = in_length("x"), np.abs(found.x) <= SHOWN
+        panels += [Lines(f"radius {radius} m", x, "stress (Pa)", [
+            Curve(found.x[shown], found.contact[shown], r"$\min(P_n,0)$", pale(ORANGE), width=4),
+            Curve(found.x[shown], found.sigma_n[shown], r"$\sigma_n(u)$", width=1)]),
+            Lines(f"gap, radius {radius} m", x, r"$u_n - g$ (mm)",
+                  [Curve(found.x[shown], -1e3 * found.gap[shown])], ylimits=(-10, 1))]
+    save_panels(directory, "normal.png", panels)
 
 
 def tangential_stress(study, directory):
     """Tangential stress and its Alart-Curnier counterpart, Tresca and Coulomb (figure 4.9)."""
-    figure, axes = plt.subplots(2, 3, figsize=(13, 5.4), constrained_layout=True, sharey="row",
-                                sharex="row")
-    for row, law in zip(axes, ("tresca", "coulomb")):
-        for axis, radius in zip(row, RADII):
+    panels = []
+    for radius in RADII:
+        for law in ("tresca", "coulomb"):
             found = curve(study, law, radius)
-            axis.plot(found.x, found.friction, color=ORANGE, linewidth=4, alpha=0.5,
-                      label=r"$P_\tau$ within the bound")
-            axis.plot(found.x, found.sigma_tau, color=BLUE, linewidth=1,
-                      label=r"$\sigma_\tau(u)$")
-            axis.set_title(f"{LAWS[law].split(',')[0]}, radius {radius} m", loc="left")
-            axis.set_xlabel("x (m)")
-        row[0].set_ylabel("stress (Pa)")
-    axes[1, 0].set_xlim(-SHOWN, SHOWN)
-    axes[0, 0].legend(fontsize=8)
-    save(figure, directory, "tangential.png")
+            shown = np.abs(found.x) <= (SHOWN if law == "coulomb" else np.inf)
+            panels.append(Lines(f"{LAWS[law].split(',')[0]}, radius {radius} m", in_length("x"), "stress (Pa)", [
+                Curve(found.x[shown], found.friction[shown], r"$P_\tau$ within the bound", pale(ORANGE), width=4),
+                Curve(found.x[shown], found.sigma_tau[shown], r"$\sigma_\tau(u)$", width=1)]))
+    save_panels(directory, "tangential.png", panels)
 
 
 def modes(runs, directory):
     """Projection errors over the training set (figures 4.4 and 4.10)."""
-    figure, axes = plt.subplots(1, 2, figsize=(10, 3.6), constrained_layout=True, sharey=True)
-    curves = [(axes[0], ("none", "full"), "61 radii", BLUE),
-              (axes[0], ("none", "grid 201"), "201 radii", ORANGE),
-              (axes[0], ("none", "grid 241"), "241 radii", GREEN),
-              (axes[1], ("tresca", "full"), "Tresca, 61 radii", BLUE),
-              (axes[1], ("coulomb", "full"), "Coulomb, 61 radii", ORANGE)]
-    for axis, key, label, colour in curves:
-        if key not in runs:
-            continue
-        error = history(runs[key], "pod/error")
-        error = error[error > 1e-12]
-        axis.plot(np.arange(len(error)), error, color=colour, label=label)
-    log_axis(axes[0], "modes N", r"$e_{POD}$", "without friction")
-    log_axis(axes[1], "modes N", "", "with friction")
-    for axis in axes:
-        axis.legend(fontsize=8)
-    save(figure, directory, "pod.png")
+    kinds = {"without friction": ((("none", "full"), "61 radii", BLUE), (("none", "grid 201"), "201 radii", ORANGE),
+                                  (("none", "grid 241"), "241 radii", GREEN)),
+             "with friction, 61 radii": ((("tresca", "full"), "Tresca", PURPLE),
+                                         (("coulomb", "full"), "Coulomb", GREY))}
+    save_panels(directory, "pod.png", share_decades([
+        Lines(title, "modes N", r"$e_{POD}$ (-)",
+              [along_size(history(runs[key], "pod/error"), label, colour, least=1e-12)
+               for key, label, colour in curves if key in runs], log=True) for title, curves in kinds.items()]))
 
 
 def interpolation(runs, directory):
-    """Errors of the empirical interpolation over (mu, Newton step): matrices above, vectors below;
-    over the training set, other parameters, and the last steps there (figures 4.5, 4.11, 4.12)."""
-    parts = (("matrix", "$B^n$", r"$B^\tau$"), ("vector", r"$\Theta^n$", r"$\Theta^\tau$"))
+    """Errors of the empirical interpolation over (mu, Newton step): matrices and vectors; over the training
+    set, other parameters, and the last steps there (figures 4.5, 4.11, 4.12)."""
+    parts = (("matrix", "$B$"), ("vector", r"$\Theta$"))
     sets = (("", "training", "-"), ("_validation", "validation", ":"),
             ("_converged", "validation, last step", "--"))
-    figure, axes = plt.subplots(2, 3, figsize=(13, 6.2), constrained_layout=True, sharey=True)
-    for row, (kind, *labels) in zip(axes, parts):
-        for axis, (law, name) in zip(row, LAWS.items()):
-            sides = ("contact",) if law == "none" else ("contact", "friction")
-            for side, label, colour in zip(sides, labels, (BLUE, ORANGE)):
+    panels = []
+    for law, name in LAWS.items():
+        for kind, symbol in parts:
+            curves = []
+            for side, label, colour in (("contact", "normal", BLUE), ("friction", "tangential", ORANGE)):
                 for suffix, title, style in sets:
                     try:
                         error = history(runs[law, EIM_ERRORS], f"curve/{side}_{kind}{suffix}")
-                    except Missing:  # zero at all these steps
+                    except Missing:  # zero at all these steps, or without friction
                         continue
-                    error = error[error > 1e-9]
-                    if len(error) > 0:
-                        axis.plot(np.arange(len(error)), error, style, color=colour,
-                                  label=f"{label}, {title}")
-            log_axis(axis, "terms", "largest relative error" if law == "none" else "",
-                     f"friction: {name}" if kind == "matrix" else "")
-            axis.legend(fontsize=7)
-    axes[0, 0].set_ylim(1e-7, 5)
-    save(figure, directory, "eim.png")
+                    if np.any(error > 1e-9):
+                        curves.append(along_size(error, f"{label}, {title}", colour, style, 1e-9))
+            panels.append(Lines(f"{symbol}, friction: {name}", "terms", "largest relative error (-)", curves, log=True,
+                                ylimits=(1e-7, 5)))
+    save_panels(directory, "eim.png", panels)
 
 
 def errors(runs, directory):
     """Errors of the reduced answers against N, three treatments of the curve and the projection
     (figures 4.6 and 4.13)."""
-    figure, axes = plt.subplots(2, 3, figsize=(13, 6.2), constrained_layout=True, sharex=True,
-                                sharey="row")
-    for (top, bottom), (law, name) in zip(axes.T, LAWS.items()):
-        stress = "lambda_max" if law == "none" else "tangential_max"
-        for rule in RULES:
-            rows = error_map(runs[law, rule])
-            colour, style = RULE_STYLES[rule]
-            for axis, column in ((top, "u_max"), (bottom, stress)):
-                axis.plot([row["N"] for row in rows],
-                          [row[column] if row["failed"] == 0 else np.nan for row in rows], style,
-                          color=colour, label=rule, markerfacecolor="none")
-        rows = error_map(runs[law, "full"])
-        top.plot([row["N"] for row in rows], [row["u_floor_max"] for row in rows], ":",
-                 color="black", label="projection")
-        floor = stress.replace("_max", "_floor_max")
-        bottom.plot([row["N"] for row in rows], [row[floor] for row in rows], ":", color="black",
-                    label="projection")
-        log_axis(top, "", "largest relative error" if law == "none" else "",
-                 f"displacement, friction: {name}")
-        log_axis(bottom, "modes N", "largest relative error" if law == "none" else "",
-                 "normal stress" if law == "none" else "tangential stress")
-    axes[0, 0].legend(fontsize=8)
-    save(figure, directory, "errors.png")
+    panels = []
+    for law, name in LAWS.items():
+        stress = "lambda" if law == "none" else "tangential"
+        for part, words in (("u", "displacement"), (stress, "normal stress" if law == "none" else "tangential stress")):
+            rows, curves = error_map(runs[law, "full"]), []
+            for rule in RULES:
+                own, (colour, style) = error_map(runs[law, rule]), RULE_STYLES[rule]
+                largest = np.where(column_of(own, "failed") == 0, column_of(own, part + "_max"), np.nan)
+                curves.append(Curve(column_of(own, "N"), largest, rule, colour, style))
+            curves.append(Curve(column_of(rows, "N"), column_of(rows, part + "_floor_max"), "projection", "black",
+                                ".:"))
+            panels.append(Lines(f"{words}, friction: {name}", "modes N", "largest relative error (-)", curves,
+                                log=True))
+    save_panels(directory, "errors.png", panels)
+
+
+def column_of(rows, name):
+    return np.array([row[name] for row in rows])
 
 
 def mixed(runs, directory):
     """The mixed method on the same mesh: energy, errors of both unknowns (figures 4.7, 4.8)."""
-    figure, axes = plt.subplots(1, 3, figsize=(13, 3.8), constrained_layout=True)
-    for key, label, style in (("none", "Nitsche", "-"), ("mixed", "mixed", ":")):
+    energies = []
+    for key, label, colour, width in (("mixed", "energy, mixed", pale(ORANGE), 4),
+                                      ("none", "energy, Nitsche", BLUE, 1)):
         rows = rows_of(runs[key, "default"] / "samples.csv")
-        axes[0].plot([row["radius"] for row in rows], [row["energy"] for row in rows], style,
-                     color=BLUE if key == "none" else ORANGE, label=label,
-                     linewidth=1.6 if key == "none" else 4)
-    axes[0].set_xlabel("R (m)")
-    axes[0].set_title("energy J (N)", loc="left")
-    nitsche = error_map(runs["none", "empirical"])
-    for axis, column in zip(axes[1:], ("u_max", "lambda_max")):
-        axis.plot([row["N"] for row in nitsche], [row[column] for row in nitsche], "o-", color=BLUE,
-                  label="Nitsche")
+        energies.append(Curve(column_of(rows, "radius"), column_of(rows, "energy"), label, colour, width=width))
+    panels, nitsche = [], error_map(runs["none", "empirical"])
+    for part, title in (("u_max", "displacement"), ("lambda_max", "normal stress")):
+        curves = [Curve(column_of(nitsche, "N"), column_of(nitsche, part), "Nitsche", BLUE, "o-")]
         for r, colour in zip(GENERATORS, (PURPLE, GREEN, ORANGE)):
             rows = [summary(runs["pair", f"{r}, {n}"]) for n in SIZES]
             rows = [row for row in rows if row["failed"] == 0]
-            axis.plot([row["N"] + row["S"] for row in rows], [row[column] for row in rows], "s--",
-                      color=colour, label=f"mixed, R = {r}", markerfacecolor="none")
-        condensed = summary(runs["mixed", "default"])
-        axis.axhline(condensed[column], color="black", linestyle=":", label="mixed, condensed")
-    log_axis(axes[1], "modes, with supremizers", "largest relative error", "displacement")
-    log_axis(axes[2], "modes, with supremizers", "", "normal stress")
-    axes[0].legend(fontsize=8)
-    axes[1].legend(fontsize=7, loc="center right")
-    save(figure, directory, "mixed.png")
+            if rows:
+                curves.append(Curve(column_of(rows, "N") + column_of(rows, "S"), column_of(rows, part),
+                                    f"mixed, R = {r}", colour, "s--"))
+        least = summary(runs["mixed", "default"])[part]
+        curves.append(level(least, curves, "mixed, condensed", "black", ":"))
+        panels.append(Lines(title, "modes, with supremizers", "largest relative error (-)", curves, log=True,
+                            floor=1e-15))
+    save_panels(directory, "mixed.png", [*panels, Lines("energy", "R (m)", "J (N)", energies)])
 
 
 def draw_all(study, runs, directory):

@@ -131,7 +131,7 @@ def free_parameters(study, runs):
     for names, training, grid, key, compared in lines:
         s, benched = summary(runs[key]), study.bench(runs[compared])
         linear, solver = (next(row for (method, _), row in benched.items() if method == wanted)
-                          for wanted in ("multilinear interpolation", "active_set warm-started"))
+                          for wanted in ("multilinear interpolation", "active_set from the answer before"))
         rows.append([names, training, f"{s['N']:.0f} + {s['S']:.0f}",
                      stored(runs[key], "law/terms").shape[1],
                      *(short(value) for value in largest_errors(runs[key])),
@@ -169,14 +169,14 @@ def costs(study, runs):
         row, steps = by_uzawa(study, runs["radius", key], queries)
         lines.append((f"reduced: {names[key]}, Uzawa's method in {steps:.0f} steps", row))
     times = {name: float(row["median_ms"]) for name, row in lines}
-    solvers = ("uzawa fixed step", "active_set warm-started")
+    solvers = ("uzawa fixed step", "active_set from the answer before")
     rows = [[name, f"{ms:.3g}", f"{queries * ms / 1e3:.3g}"] +
             [f"{times[solver] / ms:.3g}" for solver in solvers] for name, ms in times.items()]
     rows += [["published: high-fidelity", "", "450", "", ""],
              ["published: reduced, (30, 20, 20)", "", "35", "13", ""]]
     return markdown(f"Table 3.1 with our times: {queries} queries at the median of one",
                     ["method", "ms per query", "seconds for all", "times faster than Uzawa",
-                     "than warm-started active_set"], rows)
+                     "than active_set from the answer before"], rows)
 
 
 def jobs_of(study):
