@@ -242,7 +242,7 @@ def error_map_panels(run, data):
     all supremizers of each pair where b(mu) is a multiple of one form, else the modes alone; and of
     the whole model."""
     whole, kind = np.atleast_1d(table(run, "summary.csv"))[0], kind_of(run)
-    beside = {"law": "responses", "pair": "supremizers", "nitsche": ""}[kind]
+    beside = {"law": "displacements under unit loads", "pair": "supremizers", "nitsche": ""}[kind]
     if kind == "law" and reduction_of(run) == COLLOCATED:
         beside = "supremizers"
     if data["enriched"].max() > 0:

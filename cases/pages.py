@@ -77,8 +77,8 @@ functions of mu, exactly where the scene says how, otherwise by empirical interp
 """,
     "Multipliers": """
 The law is the set of conditions at a node: no penetration, no tension, and with friction a bound on the
-tangential stress. lambda_n are the normal multipliers, lambda_tau the tangential ones. A response is the
-displacement A^-1 B^T e that a unit load on one multiplier causes. `collocated` holds the bound of
+tangential stress. lambda_n are the normal multipliers, lambda_tau the tangential ones. A displacement under
+a unit load is A^-1 B^T e, what a load of 1 on one multiplier causes. `collocated` holds the bound of
 friction at its collocation nodes alone.
 """,
     "Nitsche's method": """
@@ -123,7 +123,7 @@ Linear solvers are direct; iterative ones (`-hf_ksp_type cg`) have rtol 1e-13, t
 shows one stage per step; its own options are for the command line alone.
 
 SLEPc solves the eigenproblems of the projected greedy algorithm. If b(mu) is a multiple of one fixed
-form (rbvi says that B only scales), one singular value decomposition replaces them all. Each rank has objects of its
+form (rbvi says B(mu) = s(mu) B), one singular value decomposition replaces them all. Each rank has objects of its
 own for its share of the parameters, of type lapack: this type returns all pairs of a small matrix,
 which iterative types do not do for clustered values (fewer than all are an error). `-infsup_eps_` alone
 is iterative, by objects of all ranks: where that is faster (m^3 > 1e5 n for m multipliers and n
@@ -131,7 +131,7 @@ displacement dofs) beta_HF and c_HF are the smallest and the largest eigenvalue 
 B V^-1 B^T x = beta^2 W x, with one factorisation of V for all parameters and one of [V B^T; B 0] for
 each, both over the ranks, and without a dense matrix. `-infsup_svd_` is of the same two constants
 elsewhere, and of all others: these take a dense matrix of the size of the contact dofs, but for verify
-where beta_HF is iterated and b only scales.
+where beta_HF is iterated and B(mu) = s(mu) B.
 """
 
 OF_ONLINE = """

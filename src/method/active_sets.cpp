@@ -120,7 +120,7 @@ private:
     FrictionResult result = std::move(result_);
     result.residual = residual;
     result.converged = true;
-    result.reason = "no violation left";
+    result.reason = "every condition of contact holds";
     result.x = admissible(laws_, point.x);
     describe(result, laws_, sets);
     result.start = smooth_start(diagonal_, laws_, point);

@@ -285,7 +285,7 @@ private:
   }
 
   std::string reason(Outcome outcome, const FrictionResult &result) const {
-    if (outcome == Outcome::converged) return "no violation left";
+    if (outcome == Outcome::converged) return "every condition of contact holds";
     if (outcome == Outcome::indefinite)
       return "the block of H of the nodes in contact is not positive definite: dependent "
              "constraints or an inexact H";

@@ -65,7 +65,7 @@ LcpResult solve_lcp(const ColumnSource &columns, const Vector &q, const std::vec
     }
     if (basic.violated.empty()) {
       result.converged = true;
-      result.reason = "no violation left";
+      result.reason = "every condition of contact holds";
       return finish(basic, q, std::move(result));
     }
     if (result.iterations >= limit) {

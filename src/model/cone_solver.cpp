@@ -82,8 +82,9 @@ void ConeSolver::solve_dual(ReducedAnswer &answer) {
     throw failure("the reduced constraints contradict each other: reduce again with more "
                   "supremizers (-pga_beta_fraction) or more modes (-pod_tolerance)");
   if (!report.converged)
-    throw failure("the reduced problem did not converge in " + std::to_string(report.iterations) +
-                  " active-set updates: reduce again with fewer generators (-cone_tolerance)");
+    throw failure(
+        "the reduced problem did not converge in " + std::to_string(report.iterations) +
+        " active-set updates: reduce again with fewer functions of the pressure (-cone_tolerance)");
   answer.iterations = report.iterations;
   answer.lambda = qp_.x() / scale;
   answer.u = at_mu_.transposed_half_response(qp_.residual());
@@ -126,7 +127,7 @@ void ConeSolver::finish(ReducedAnswer &answer) {
     answer.motions = free_motions_at(at_mu_, motions, b_scale_ * (b_ * motions), laws);
   }
   check_residual(answer.residual, query_residual_limit,
-                 ": reduce again with fewer generators or more supremizers");
+                 ": reduce again with fewer functions of the pressure or more supremizers");
   if (!positive_) check_pull(answer);
 }
 

@@ -124,7 +124,7 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   print_failed(out, model);
   label(out, "modes") << model.body.modes << '\n';
   const bool joined = model.contact.law && !model.contact.law->on_functions();
-  label(out, joined ? "responses" : "supremizers")
+  label(out, joined ? "displacements under unit loads" : "supremizers")
       << model.body.supremizers << (model.body.online_enriched ? " (the space is made online)" : "")
       << '\n';
   if (!model.has_multipliers())
@@ -132,8 +132,9 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   else if (model.contact.law)
     print_law(out, *model.contact.law, model.contact.generators);
   else
-    label(out, "cone generators") << model.contact.generators - model.contact.free_modes << '\n';
-  if (model.contact.free_modes > 0) label(out, "free modes") << model.contact.free_modes << '\n';
+    label(out, "functions >= 0") << model.contact.generators - model.contact.free_modes << '\n';
+  if (model.contact.free_modes > 0)
+    label(out, "functions of either sign") << model.contact.free_modes << '\n';
   print_terms(out, "a", model.body.a);
   print_terms(out, "f", model.body.f);
   if (!model.has_multipliers()) {
@@ -158,7 +159,7 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   print_several_answers(out, model);
   warn_of_balance(out, model);
   if (model.body.supremizers > 0)
-    label(out, "  decorrelated") << validation(model.made.validation_decorrelated) << '\n';
+    label(out, "  modes alone") << validation(model.made.validation_decorrelated) << '\n';
 }
 
 namespace {

@@ -62,9 +62,9 @@ bool take_answers(const Problem &problem, const ReducedModel &model, Index size,
     for (std::optional<Mu> mu; set.size() < at_a_time && (mu = random.next());)
       set.push_back(*mu);
     if (set.empty())
-      throw failure("the responses to the answers of the law go on after " +
-                    std::to_string(most_queries) +
-                    " of them: use a smaller box, or -response_tolerance 0");
+      throw failure(
+          "displacements under the contact loads of further answers are still new after " +
+          std::to_string(most_queries) + " answers: use a smaller box, or -response_tolerance 0");
     answers = parts_at(problem, model, *solver, set, size, part);
   } while (take(answers));
   return true;
@@ -77,14 +77,14 @@ bool awaits_answers(const Problem &problem, const CondensedLoads &loads,
   const double numbers = static_cast<double>(loads.joining()) * problem.dofs().total_free;
   const Scene &scene = problem.scene();
   const bool scales = parameters_beside_common(scene.a, scene.parameters).empty(); // or is constant
-  return (!loads.units.empty() || loads.join) && scales &&
-         options.responses > 0 && numbers > options.large_fields;
+  return (!loads.units.empty() || loads.join) && scales && options.responses > 0 &&
+         numbers > options.large_fields;
 }
 
 ResponseDirections::ResponseDirections(const Matrix &compliance) {
   root_ = (compliance + compliance.transpose()) / 2;
   if (!cholesky_in_place(root_))
-    throw failure("the responses of the body to its contact loads are dependent: use "
+    throw failure("the displacements under unit loads on the contact are dependent: use "
                   "-response_tolerance 0");
   root_.transposeInPlace();
 }
@@ -132,8 +132,7 @@ int append_answered_responses(Problem &problem, const CondensedLoads &loads,
   const Scene &scene = problem.scene();
   const bool scales = !constant_stiffness(scene);
   const auto multipliers = [&](const ReducedAnswer &answer) {
-    const double softer =
-        scales ? 1 / common_coefficient(scene.a, scene.parameters, answer.mu) : 1;
+    const double softer = scales ? 1 / common_coefficient(scene.a, scene.parameters, answer.mu) : 1;
     return Vector(!loads.units.empty() ? softer * answer.reaction
                                        : softer * answer.theta_b[0] * answer.lambda);
   };

@@ -22,7 +22,7 @@ StageRow condensation_row(const Scene &, const ReduceOptions &options, const Red
   const CondensedOperator &condensed = made->bases.condensed;
   std::string what = counted(made->bases.nodal_dual.cols(), "multiplier") +
                      (made->bases.dropped > 0 ? " near contact" : "") + ", " +
-                     counted(made->bases.responses, "response") + ", " +
+                     counted(made->bases.responses, "displacement") + " under unit loads, " +
                      counted(made->bases.factorisations, "factorisation") + ", " +
                      counted(condensed.terms.cols(), "term");
   if (!condensed.axes.empty()) what += ", error " + short_number(condensed.error);

@@ -35,9 +35,9 @@ StageRow cone_row(const ReduceOptions &options, const Reduction *made) {
   const Index modes = found.modes.columns.cols();
   return {
       stage::cone,
-      "R = " + counted(found.basis.generators.cols(), "generator") +
-          (modes > 0 ? " + " + counted(modes, "free mode") : "") + " (" + name + "), error " +
-          short_number(found.history.error.back()) + ", " + found.history.reason +
+      "R = " + counted(found.basis.generators.cols(), "function") + " >= 0" +
+          (modes > 0 ? " + " + std::to_string(modes) + " of either sign" : "") + " (" + name +
+          "), error " + short_number(found.history.error.back()) + ", " + found.history.reason +
           (made->ring > cone.ring ? ", widened to a ring of " + std::to_string(made->ring) : "")};
 }
 
@@ -48,10 +48,9 @@ StageRow sweep_of_supremizers_row(const Scene &scene, const ReduceOptions &optio
   if (options.enrichment == Enrichment::decorrelated)
     return {sweep_of_supremizers, "no supremizers are wanted", skipped};
   const bool separable = separable_contact(scene);
-  if (made == nullptr && separable)
-    return {sweep_of_supremizers, "only if B does more than scale", part};
+  if (made == nullptr && separable) return {sweep_of_supremizers, "unless B(mu) = s(mu) B", part};
   if (separable && made->affine.b_size() == 1)
-    return {sweep_of_supremizers, "B only scales: one set and one SVD serve all mu", skipped};
+    return {sweep_of_supremizers, "B(mu) = s(mu) B: one set and one SVD serve all mu", skipped};
   return {sweep_of_supremizers,
           follows_state(scene) ? "B depends on mu and the step of the iteration: part of PGA"
                                : "B depends on mu: part of PGA",

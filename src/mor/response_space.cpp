@@ -195,16 +195,18 @@ ResponseSpace append_fields(Problem &problem, const FieldSource &source,
   std::mt19937 generator(1); // the same on every rank
   double scale = 0;
   Index expected = 0;
-  Progress progress("factorisations for responses", 0, rank_of(problem.comm()) == 0);
+  Progress progress("factorisations for displacements under unit loads", 0,
+                    rank_of(problem.comm()) == 0);
   for (std::pair<MultiIndex, double> next{MultiIndex(axes.size(), 0), 1}; next.second > tolerance;
        next = grid.next()) {
     result.left = next.second;
     if (result.points == most) {
       if (rank_of(problem.comm()) == 0)
-        std::fprintf(stderr,
-                     "rbvi: warning: the responses of the body are known to %.1e only after %d "
-                     "factorisations: narrow the bounds of the parameters of the stiffness\n",
-                     result.left, most);
+        std::fprintf(
+            stderr,
+            "rbvi: warning: the displacements under unit loads are known to %.1e only after %d "
+            "factorisations: narrow the bounds of the parameters of the stiffness\n",
+            result.left, most);
       break;
     }
     const Mu mu = point_at(problem.scene(), axes, next.first, leja, all_parameters);

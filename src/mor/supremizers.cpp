@@ -145,7 +145,7 @@ StageRow pga_row(const Scene &scene, const ReduceOptions &options, const Reducti
     return {stage::pga, "the span of all supremizers" + product};
   if (made == nullptr)
     return {stage::pga, "supremizers" + product + " until " + pga_target(options) +
-                            (separable_contact(scene) ? "; one SVD if B only scales" : "")};
+                            (separable_contact(scene) ? "; one SVD if B(mu) = s(mu) B" : "")};
   const ReducedBases &bases = made->bases;
   return {stage::pga, "S = " + counted(bases.supremizers, "supremizer") + product + ", sigma " +
                           short_number(bases.pga.sigma.back()) + ", " + bases.pga.reason};

@@ -73,11 +73,14 @@ BenchRow timed_row(std::string method, std::string includes, const std::vector<d
   return row;
 }
 
-std::string solver_name(const Problem &problem, const HfOptions &options, bool cold) {
-  if (!has_multipliers(problem.scene())) return cold ? "nitsche cold" : "nitsche warm-started";
+const std::string from_rest = "from rest", from_answer = "from the answer before";
+
+std::string solver_name(const Problem &problem, const HfOptions &options, bool at_rest) {
+  const std::string &from = at_rest ? from_rest : from_answer;
+  if (!has_multipliers(problem.scene())) return "nitsche " + from;
   switch (options.method) {
   case HfMethod::active_set:
-    return cold ? "active_set cold" : "active_set warm-started";
+    return "active_set " + from;
   case HfMethod::uzawa:
     return options.uzawa.accelerated ? "uzawa accelerated" : "uzawa fixed step";
   case HfMethod::vi:
@@ -227,13 +230,14 @@ std::vector<BenchRow> bench_iterations(Problem &problem, const std::vector<Sampl
     rows.push_back(timed_row("iteration: " + name, "this part alone, the compliance at hand",
                              seconds(method, warm, true)));
   };
-  add("cold", NonlinearMethod::automatic, false);
-  add("warm", NonlinearMethod::automatic, true);
+  add(from_rest, NonlinearMethod::automatic, false);
+  add(from_answer, NonlinearMethod::automatic, true);
   std::vector methods{NonlinearMethod::kacanov, NonlinearMethod::anderson};
   if (has_curvature(problem.contact()) && !has_friction(problem.scene()))
     methods.push_back(NonlinearMethod::newton);
   for (const auto method : methods)
-    add(nonlinear_method_names()[static_cast<std::size_t>(method)] + ", cold", method, false);
+    add(nonlinear_method_names()[static_cast<std::size_t>(method)] + ", " + from_rest, method,
+        false);
   rows.push_back(timed_row("one linear solve", "this part alone", linear));
   return rows;
 }

@@ -22,17 +22,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void print_errors(const std::string &label, const ModelErrors &e) {
+/// Errors of the ways to answer, by their names.
+using Rows = std::vector<std::pair<std::string, ModelErrors>>;
+
+constexpr const char *modes_alone = "modes alone";
+
+/// The width of a column that holds all of these names, so that the numbers beside them stand below
+/// each other.
+int name_width(const Rows &rows) {
+  std::size_t width = 18;
+  for (const auto &[name, errors] : rows)
+    width = std::max(width, name.size());
+  return static_cast<int>(width);
+}
+
+void print_errors(const std::string &label, int width, const ModelErrors &e) {
   const char *name = label.c_str();
   if (e.failed > 0)
-    std::printf("  %-18s no answer at %d of %d\n", name, e.failed, static_cast<int>(e.u.size()));
+    std::printf("  %-*s no answer at %d of %d\n", width, name, e.failed,
+                static_cast<int>(e.u.size()));
   else
-    std::printf("  %-18s %9.2e %9.2e   %9.2e %9.2e   %9.3f   %9.1e\n", name, e.u.mean(),
+    std::printf("  %-*s %9.2e %9.2e   %9.2e %9.2e   %9.3f   %9.1e\n", width, name, e.u.mean(),
                 e.u.maxCoeff(), e.lambda.mean(), e.lambda.maxCoeff(), 1e3 * e.seconds,
                 e.kkt_residual);
   if (e.failed == 0 && e.tangential.size() > 0)
-    std::printf("  %-18s %9s %9s   %9.2e %9.2e\n", "  lambda_tau", "", "", e.tangential.mean(),
-                e.tangential.maxCoeff());
+    std::printf("  %-*s %9s %9s   %9.2e %9.2e\n", width, "  lambda_tau", "", "",
+                e.tangential.mean(), e.tangential.maxCoeff());
 }
 
 /// The multiplier where it is worst (with friction its tangential part), and what it should be.
@@ -71,9 +86,6 @@ void write_worst_pressure(const fs::path &path, const ReducedModel &model, const
   table.write(path);
 }
 
-/// Errors of the ways to answer, by their names.
-using Rows = std::vector<std::pair<std::string, ModelErrors>>;
-
 /// One row per way to answer; `with_outputs`: seconds of a query of the model with its outputs.
 void write_summary(const fs::path &path, const Rows &rows, const ReducedModel &model,
                    double with_outputs) {
@@ -83,7 +95,7 @@ void write_summary(const fs::path &path, const Rows &rows, const ReducedModel &m
           "lambda_floor_mean,lambda_floor_max,seconds,kkt_residual,failed,seconds_with_outputs\n";
   for (const auto &[name, e] : rows)
     text << name << ',' << model.body.modes << ','
-         << (name == "decorrelated" ? 0 : model.body.supremizers) << ',' << model.contact.generators
+         << (name == modes_alone ? 0 : model.body.supremizers) << ',' << model.contact.generators
          << ',' << model.contact.free_modes << ',' << e.u.mean() << ',' << e.u.maxCoeff() << ','
          << e.u_floor.mean() << ',' << e.u_floor.maxCoeff() << ',' << e.lambda.mean() << ','
          << e.lambda.maxCoeff() << ',' << e.lambda_floor.mean() << ',' << e.lambda_floor.maxCoeff()
@@ -144,9 +156,9 @@ void print_output_errors(const std::vector<OutputError> &errors) {
 std::string name_of(const ReducedModel &model) {
   return !model.has_multipliers()      ? nitsche_name(model)
          : model.contact.law           ? reduction_name(*model.contact.law)
-         : model.body.supremizers == 0 ? "decorrelated"
-         : model.body.online_enriched  ? "online-enriched"
-                                       : "offline-enriched";
+         : model.body.supremizers == 0 ? modes_alone
+         : model.body.online_enriched  ? "supremizers made online"
+                                       : "supremizers made offline";
 }
 
 /// Of the model, and of its modes alone where it has more.
@@ -154,21 +166,23 @@ Rows rows_of(const ReducedModel &model, const Truths &truths, const SparseMatrix
   Rows rows{{name_of(model), model_errors(model, {}, truths, w)}};
   if (model.body.supremizers > 0)
     rows.emplace_back(
-        "decorrelated",
+        modes_alone,
         model_errors(leading(model, model.body.modes, model.contact.generators), {}, truths, w));
   return rows;
 }
 
 void print_rows(const std::string &where, const Rows &rows) {
-  std::printf("Relative errors %s\n  %-18s %9s %9s   %9s %9s   %9s   %9s\n", where.c_str(), "",
-              "u mean", "max", "lambda m.", "max", "ms/query", "KKT");
+  const int width = name_width(rows);
+  std::printf("Relative errors %s\n  %-*s %9s %9s   %9s %9s   %9s   %9s\n", where.c_str(), width,
+              "", "u mean", "max", "lambda m.", "max", "ms/query", "KKT");
   for (const auto &[label, errors] : rows)
-    print_errors(label, errors);
+    print_errors(label, width, errors);
   const ModelErrors &whole = rows.front().second;
-  std::printf("  %-18s %9.2e %9.2e   %9.2e %9.2e\n", "bases alone", whole.u_floor.mean(),
-              whole.u_floor.maxCoeff(), whole.lambda_floor.mean(), whole.lambda_floor.maxCoeff());
+  std::printf("  %-*s %9.2e %9.2e   %9.2e %9.2e\n", width, "best of the bases",
+              whole.u_floor.mean(), whole.u_floor.maxCoeff(), whole.lambda_floor.mean(),
+              whole.lambda_floor.maxCoeff());
   if (whole.tangential_floor.size() > 0)
-    std::printf("  %-18s %9s %9s   %9.2e %9.2e\n", "  lambda_tau", "", "",
+    std::printf("  %-*s %9s %9s   %9.2e %9.2e\n", width, "  lambda_tau", "", "",
                 whole.tangential_floor.mean(), whole.tangential_floor.maxCoeff());
 }
 
@@ -203,7 +217,7 @@ double check_errors(ReducedModel &model, const SparseMatrix &w, const Truths &va
   print_rows("over " + std::to_string(validation.mu.size()) + " validation mu", rows);
   write_errors(out / "errors.csv", model.scene.parameters, validation, rows);
   const double with_outputs = seconds_with_outputs(model, validation.mu, only);
-  std::printf("  %-18s %9s %9s   %9s %9s   %9.3f\n",
+  std::printf("  %-*s %9s %9s   %9s %9s   %9.3f\n", name_width(rows),
               only.empty() ? "with its outputs" : "with those asked", "", "", "", "",
               1e3 * with_outputs);
   write_summary(out / "summary.csv", rows, model, with_outputs);

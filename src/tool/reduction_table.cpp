@@ -144,9 +144,10 @@ std::vector<Option> of_law(ReduceOptions &o) {
       kept(number("condensed_tolerance", relative_error, o.condensed.tolerance,
                   "relative error that the condensed operator may have as a function of mu")),
       number("response_tolerance", relative_error, o.condensed.responses,
-             "responses A^-1 B^T join the modes: first those of one A (if it is constant and they "
-             "would take more than 160 MB only those to answers of the law, to 1e-5 in the "
-             "energy), then of others until this relative error is left; 0: none join"),
+             "displacements A^-1 B^T under unit loads join the modes: first those of one A (if it "
+             "is constant and they would take more than 160 MB only those under the loads of "
+             "answers, to 1e-5 in the energy), then of others until this relative error is left; "
+             "0: none join"),
       kept(use::law,
            only(use::multipliers,
                 choice("multiplier_reduction", choices(multiplier_reduction_names(), reductions),

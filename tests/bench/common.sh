@@ -38,6 +38,7 @@ times() { # stage, logs
     if (word[1] ~ /^[0-9]+[.][0-9][0-9][0-9]$/) print word[1] }' "${@:2}"
 }
 stage() { times "$@" | median; }
+made_offline() { sed -n 's/^  supremizers made offline//p' "$work/$1.log"; } # log of verify: its errors
 value() { sed -n "s/.*$1.*/\1/p" "$work/$2.log" | head -n 1; } # expression with one group, log
 column() { # file, row, column number
   awk -v row="$2" -v column="$3" 'BEGIN { FS = "\",\"" }

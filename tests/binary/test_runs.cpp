@@ -88,7 +88,7 @@ TEST_F(Runs, EigenvaluesAndSingularValuesAreSlepcs) {
     const std::string out = output_of(rbvi(2, "offline -case case.yaml -pga_eps_view -pga_svd_view "
                                               "-disc_map " +
                                                   map + " -out " + map));
-    EXPECT_EQ(contains(out, "EPS Object: (pga_)"), map == "graded") << "b only scales: one SVD";
+    EXPECT_EQ(contains(out, "EPS Object: (pga_)"), map == "graded") << "b(mu) = s(mu) b: one SVD";
     EXPECT_EQ(contains(out, "SVD Object: (pga_)"), map == "similarity");
     EXPECT_TRUE(contains(out, std::string("warning: -pga_") + (map == "graded" ? "svd" : "eps") +
                                   "_view has no effect here"))
@@ -112,9 +112,9 @@ TEST_F(Runs, TheSameHybridModelFromOneAndTwoRanks) {
     offline(2, common + "2");
     expect_same(map + "2", answers(map + "1"));
     const Finished model = shell(rbvi_online(map + "1/model.h5"));
-    EXPECT_EQ(lines_with(model.out, "free modes"), 1) << model.out;
+    EXPECT_EQ(lines_with(model.out, "functions of either sign"), 1) << model.out;
     const Finished inspected = shell(rbvi(2, "inspect " + map + "1/model.h5"));
-    EXPECT_EQ(lines_with(inspected.out, "free modes"), 1) << inspected.out;
+    EXPECT_EQ(lines_with(inspected.out, "functions of either sign"), 1) << inspected.out;
   }
 }
 
@@ -123,9 +123,10 @@ TEST_F(Runs, EveryEnrichmentIsReducedAndVerified) {
     std::string options, row;
   };
   for (const std::string map : {"similarity", "graded"})
-    for (const Way &way : {Way{"decorrelated", "decorrelated"}, Way{"online", "online-enriched"},
-                           Way{"offline", "offline-enriched"},
-                           Way{"offline -pga_product energy", "offline-enriched"}}) {
+    for (const Way &way :
+         {Way{"decorrelated", "modes alone"}, Way{"online", "supremizers made online"},
+          Way{"offline", "supremizers made offline"},
+          Way{"offline -pga_product energy", "supremizers made offline"}}) {
       SCOPED_TRACE(map + " " + way.options);
       fs::remove_all("run");
       offline(2, "-cone_ring 0 -load -60 -disc_map " + map + " -out run -pga_enrichment " +
@@ -192,11 +193,11 @@ TEST_F(Runs, AHybridConeWithoutModesIsAModel) {
   const int moving = std::stoi(refused.err.substr(refused.err.find(words) + words.size()));
   const Finished run = shell(rbvi(1, common + "-cone_max_size " + std::to_string(moving)));
   EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_TRUE(contains(run.out, "R = " + std::to_string(moving) + " generators (hybrid)"))
+  EXPECT_TRUE(contains(run.out, "R = " + std::to_string(moving) + " functions >= 0 (hybrid)"))
       << run.out;
   const Finished model = shell(rbvi(1, "inspect run/model.h5"));
   EXPECT_EQ(model.status, 0) << model.err;
-  EXPECT_EQ(lines_with(model.out, "free modes"), 0) << model.out;
+  EXPECT_EQ(lines_with(model.out, "functions of either sign"), 0) << model.out;
   const Finished answer = shell(rbvi_online("run/model.h5 --mu 0.2,0,0"));
   EXPECT_EQ(answer.status, 1);
   EXPECT_TRUE(contains(answer.err, "the pressure is negative")) << answer.err;
@@ -290,7 +291,7 @@ TEST_F(Runs, PlanAndEndAreOneTable) {
   for (const char *stage :
        {"mesh", "snapshots", "interpolation", "POD", "cone", "PGA", "projection"})
     EXPECT_EQ(lines_with(run.out, std::string("  ") + stage + " "), 2) << stage << run.out;
-  EXPECT_TRUE(contains(run.out, "skipped: B only scales")) << run.out;
+  EXPECT_TRUE(contains(run.out, "skipped: B(mu) = s(mu) B")) << run.out;
   EXPECT_TRUE(contains(run.out, "8 of 8 samples, 2 groups, ")) << run.out;
   const Finished again = shell(rbvi(1, "offline -out run"));
   EXPECT_EQ(again.status, 0) << again.err;

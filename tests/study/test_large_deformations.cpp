@@ -212,9 +212,9 @@ TEST(LargeModel, IterationsAreTimedByTheMethodsThatTheLawHas) {
       names.push_back(row.method);
       EXPECT_GT(row.queries, 0);
     }
-    const bool has_newton = std::ranges::count(names, "iteration: newton, cold") == 1;
+    const bool has_newton = std::ranges::count(names, "iteration: newton, from rest") == 1;
     EXPECT_EQ(has_newton, friction == "none");
-    EXPECT_EQ(std::ranges::count(names, "iteration: kacanov, cold"), 1);
+    EXPECT_EQ(std::ranges::count(names, "iteration: kacanov, from rest"), 1);
   }
 }
 

@@ -28,7 +28,7 @@ void check(const CollocatedProblem &p, const Vector &start) {
   bounds_per_node(p.bounds, p.normal_rows.rows());
   if (p.normal_rows.size() > 0 &&
       p.normal_rows.minCoeff() < -accuracy * p.normal_rows.cwiseAbs().maxCoeff())
-    throw failure("collocated friction: a row of N has a negative entry: clip the generators");
+    throw failure("collocated friction: a row of N has a negative entry: clip the functions");
   if (p.h.size() > 0 && !(p.h.diagonal().minCoeff() > 0)) throw not_positive_definite();
 }
 

@@ -120,7 +120,7 @@ private:
 
 Error not_positive_definite() {
   return failure("collocated friction: H is not positive definite: leave out what depends on the "
-                 "other generators and modes");
+                 "other functions and modes");
 }
 
 ScaledProblem scaled(const CollocatedProblem &p) {

@@ -99,7 +99,8 @@ namespace {
 std::string multiplier_text(const Reduction *made) {
   if (made == nullptr) return "collocated";
   const MultiplierBasis &basis = made->bases.multipliers.basis;
-  const std::string normal = "collocated: R = " + counted(basis.normal.cols(), "generator");
+  const std::string normal =
+      "collocated: R = " + counted(basis.normal.cols(), "function") + " >= 0";
   if (basis.tangential.size() == 0) return normal;
   return normal + ", S = " + counted(basis.tangential.cols(), "mode");
 }

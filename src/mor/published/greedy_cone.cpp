@@ -134,7 +134,7 @@ void GreedyCone::add(const Vector &direction, Index snapshot) {
   coordinates_.col(size_) = image / image.norm();
   NonnegativeQp projection(map_.rows());
   if (!projection.solve(coordinates(), coordinates_.col(size_)).converged)
-    throw failure("the projection of generator " + std::to_string(size_) + " did not converge");
+    throw failure("the projection of function " + std::to_string(size_) + " did not converge");
   cone_.history.e_orth.push_back(projection.residual().norm());
   cone_.history.selected.push_back(static_cast<int>(snapshot));
   ++size_;
