@@ -246,6 +246,39 @@ void add_lines(const std::vector<ContactLine> &lines, bool turned, OutputLines &
            });
 }
 
+/// What contact pushes the first body of interface i with; of tangential multipliers alone, where
+/// it is that of friction.
+PointForces forces_of(const Contact &contact, std::size_t i, const FullMu &mu,
+                      const OutputSources &sources, const Vector &lambda, bool of_friction) {
+  const ContactInterface &interface = *contact.interfaces[i];
+  Vector own = lambda.segment(contact.first_row[i], interface.dual().size());
+  if (of_friction) own.head(interface.dual().nodes()).setZero();
+  PointForces forces = interface.point_forces(
+      mu, {.displacement = at_columns(interface.mesh(), sources.of_interface(i))}, own);
+  std::erase_if(forces, [](const PointForce &force) { return force.part != 0; });
+  return forces;
+}
+
+/// Of some forces and of their images.
+double moment_of(const OutputForm &form, const FullMu &mu, const MirrorPlanes &mirrors,
+                 const PointForces &forces) {
+  Point about{};
+  for (std::size_t c = 0; c < form.about.size(); ++c)
+    about[c] = form.about[c](mu);
+  double moment = 0;
+  for (int image = 0; image < image_count(mirrors); ++image)
+    for (PointForce force : forces) {
+      for (std::size_t k = 0; k < mirrors.size(); ++k)
+        if (((image >> k) & 1) != 0) {
+          const auto c = static_cast<std::size_t>(mirrors[k].component);
+          force.at[c] = 2 * mirrors[k].position - force.at[c];
+          force.force[c] = -force.force[c];
+        }
+      moment += dot(form.vector, cross(force.at - about, force.force));
+    }
+  return moment;
+}
+
 } // namespace
 
 std::vector<ContactLine> contact_lines(const Grid &grid, const FrictionBound &bound, double least) {
@@ -319,6 +352,11 @@ void add_named_outputs(const Scene &scene, const Contact &contact, const FullMu 
     if (has_cells(form)) {
       const auto output = static_cast<int>(k);
       value = sources.of_cells(output) + shared(form.vector, output);
+    } else if (form.kind == OutputForm::Kind::moment) {
+      for (std::size_t i = 0; i < of.size(); ++i)
+        if (std::ranges::find(form.at, contact.names[i]) != form.at.end())
+          value += moment_of(form, mu, scene.mirrors,
+                             forces_of(contact, i, mu, sources, lambda, form.of_friction));
     } else {
       OutputLines lines(form, mu, scene.mirrors);
       for (std::size_t i = 0; i < of.size(); ++i) {

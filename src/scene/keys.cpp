@@ -225,6 +225,12 @@ const std::vector<CaseKey> all_keys{
      "the force along this direction by which boundaries hold the body; of a membrane [1, 0], of a "
      "solid three numbers"},
     {"outputs.*", "spring", "a spring", "the force with which it pulls"},
+    {"outputs.*", "moment", "x | y | z",
+     "that of the forces of contact on the (first) body about this axis; of plane bodies z"},
+    {"outputs.*", "about", "[expression, expression]",
+     "a point that the axis of the moment goes through; of a solid three", false, "m"},
+    {"outputs.*", "of", "contact | friction",
+     "the moment of all tractions, or of the tangential ones alone"},
     {"outputs.*", "where", "expression", "a condition: the part that counts"},
     {"outputs.*", "says", "text", "what it is"},
     {"require.*", "that", "expression", "in parameters: it must hold", true},

@@ -18,7 +18,7 @@ using Place = OutputForm::Place;
 const std::vector<std::pair<std::string, Kind>> kinds{
     {"integral", Kind::integral}, {"mean", Kind::mean},       {"max", Kind::max},
     {"min", Kind::min},           {"measure", Kind::measure}, {"value", Kind::mean},
-    {"reaction", Kind::reaction}, {"spring", Kind::spring}};
+    {"reaction", Kind::reaction}, {"spring", Kind::spring},   {"moment", Kind::moment}};
 
 /// Throws bad_input for a name that a table has already.
 void check_name(const std::string &name, const Scene &scene) {
@@ -166,12 +166,55 @@ void put_spring(Reader &reader, const CaseNode &node, const Scene &scene, Output
   if (spring.preload) form.preload = coefficient(*spring.preload);
 }
 
+/// Throws bad_input where contact has no moment of points, or where that of the image cancels it.
+void check_moment(const Scene &scene, const OutputForm &form,
+                  const std::vector<Expression> &about) {
+  if (form.place != Place::contact || form.conditional)
+    throw bad_input("a moment is that of contacts, whole: {moment: z, about: [0, 0], at: CONTACT}");
+  if (scene.axisymmetric || scene.components == 1)
+    throw bad_input("contact of an axisymmetric body or of a membrane has no moment: that of a "
+                    "turned body cancels around its axis");
+  for (std::size_t i = 0; i < scene.contacts.size(); ++i)
+    if ((scene.contacts[i].follows_state || !has_multipliers(scene)) &&
+        std::ranges::find(form.at, contact_name(scene, i)) != form.at.end())
+      throw bad_input("a moment is that of contact by multipliers with small kinematics: integrate "
+                      "pressure and its arm");
+  for (const auto &[component, position] : scene.mirrors)
+    if (const auto c = static_cast<std::size_t>(component);
+        form.vector[c] == 0 && about[c].constant() == position)
+      throw bad_input("a moment about a point of the plane of symmetry cancels that of the mirror "
+                      "image, but for that about the normal of the plane: of the whole body there "
+                      "is none");
+}
+
+/// {moment: z, about: [x, y], at: CONTACT, of: friction}
+void put_moment(Reader &reader, const CaseNode &node, const Scene &scene, OutputForm &form) {
+  const std::vector<std::string> axes =
+      scene.dim == 3 ? std::vector<std::string>{"x", "y", "z"} : std::vector<std::string>{"z"};
+  const std::string axis = choice_or(node, "moment", "z", axes);
+  form.vector[static_cast<std::size_t>(axis.front() - 'x')] = 1;
+  form.of_friction = choice_or(node, "of", "contact", {"contact", "friction"}) == "friction";
+  const std::vector<Expression> about = components_in(reader, entry(node, "about"));
+  if (std::ssize(about) != scene.dim)
+    throw bad_input(scene.dim == 3 ? "a moment is about [x, y, z]" : "a moment is about [x, y]");
+  for (const Expression &x : about)
+    form.about.push_back(coefficient_of(formula_of(reader, {x})));
+  put_place(reader, node, scene, form);
+  form.conditional = node.find("where") != nullptr;
+  check_moment(scene, form, about);
+}
+
 /// Nothing where it is not known. Of plane problems what is integrated is that of a unit of
 /// thickness.
 std::optional<Dimension> dimension_of_output(const Reader &reader, const CaseNode &node,
                                              const Scene &scene, const OutputForm &form) {
   if (!reader.units) return {};
   if (form.kind == Kind::reaction || form.kind == Kind::spring) return size_of(scene, Size::force);
+  if (form.kind == Kind::moment) {
+    Dimension moment = size_of(scene, Size::force);
+    ++moment[0];
+    return moment;
+  }
   const bool whole = form.kind == Kind::integral || form.kind == Kind::measure;
   std::optional<Dimension> dimension = Dimension{};
   if (form.kind != Kind::measure) dimension = Dimensions(reader).of(entry(node, kind_of(node)));
@@ -184,12 +227,16 @@ OutputForm output_in(Reader &reader, const std::string &name, const CaseNode &no
                      const Scene &scene) {
   check_name(name, scene);
   const std::string kind = kind_of(node);
+  if (kind != "moment" && (node.find("about") != nullptr || node.find("of") != nullptr))
+    throw bad_input("'about' and 'of' are those of a moment: {moment: z, about: [0, 0]}");
   OutputForm form{name};
   form.kind = std::ranges::find(kinds, kind, &std::pair<std::string, Kind>::first)->second;
   if (form.kind == Kind::reaction) {
     put_reaction(reader, node, scene, form);
   } else if (form.kind == Kind::spring) {
     put_spring(reader, node, scene, form);
+  } else if (form.kind == Kind::moment) {
+    put_moment(reader, node, scene, form);
   } else {
     put_place(reader, node, scene, form);
     if (form.place == Place::contact && scene.components == 1)

@@ -61,7 +61,7 @@ def main(programs, out):
         compare(one, two, 1e-8, f"one and two ranks at {mu}")
     # Outputs of the block's own, over its foot, its body and contact.
     called(tool, "offline", *BLOCK, "-out", out / "block")
-    names = (*OUTPUTS, "stuck", "peak", "mean stress")
+    names = (*OUTPUTS, "stuck", "peak", "mean stress", "turn", "tilt")
     compare(numbers(called(tool, "solve", *BLOCK, "-mu", "0.013,0.004"), names),
             numbers(called(online, out / "block/model.h5", "--mu", "0.013,0.004"), names), ACCURATE, "the block")
     called(online, out / "np2/model.h5", "--mu", UNSEEN[0], "--vtu", out / "u.vtu", "--contact",

@@ -139,18 +139,21 @@ struct OutputForm {
     min,
     measure,
     reaction, ///< a(u, l) - f(l), l a unit displacement of fixed boundaries, zero at other nodes
-    spring    ///< stiffness m(u) + preload, m the sum of some means
+    spring,   ///< stiffness m(u) + preload, m the sum of some means
+    moment    ///< of the forces of contact on the (first) body
   };
   enum class Place { contact, boundary, region, point };
   std::string name, unit{}, says{}; ///< unit: "" where it is not known
   Kind kind = Kind::integral;
   Place place = Place::contact;
   std::vector<std::string> at{}; ///< contacts, boundaries or regions; no region: the whole mesh
-  std::function<FieldValues> values{};               ///< what is integrated, ..., and where
-  bool conditional = false;                          ///< it is not asked for everywhere
-  Point vector{};                                    ///< the point, or the direction of a reaction
+  std::function<FieldValues> values{}; ///< what is integrated, ..., and where
+  bool conditional = false;            ///< it is not asked for everywhere
+  Point vector{}; ///< the point, or the direction of a reaction or of the axis of a moment
   std::vector<Mean> means{};                         ///< of a spring
   std::function<Coefficient> stiffness{}, preload{}; ///< of a spring; empty: 0
+  std::vector<std::function<Coefficient>> about{};   ///< a point on the axis of a moment
+  bool of_friction = false; ///< a moment: of the tangential tractions alone
 };
 
 /// Outputs of one full solve that are known.
