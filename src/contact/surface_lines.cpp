@@ -13,17 +13,53 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
+using Barycentric = std::array<double, 4>;
+
 /// A line across a triangle, from and to barycentric coordinates.
 struct Across {
-  std::array<std::array<double, 4>, 2> ends;
+  std::array<Barycentric, 2> ends;
   double share; ///< of the area of the triangle, that it stands for
-  std::array<double, 4> at(double s) const {
-    std::array<double, 4> point{};
+};
+
+/// A triangle, or the part of one that is beside one of its vertices, or between these parts.
+struct TrianglePart {
+  std::array<Barycentric, 3> corners;
+  double share;                    ///< of the area of the triangle
+  std::array<bool, 2> of_vertices; ///< whether it touches, and sticks
+  Barycentric at(const Barycentric &own) const {
+    Barycentric point{};
     for (std::size_t i = 0; i < 3; ++i)
-      point[i] = (1 - s) * ends[0][i] + s * ends[1][i];
+      for (std::size_t k = 0; k < 3; ++k)
+        point[i] += own[k] * corners[k][i];
     return point;
   }
 };
+
+Barycentric between(std::size_t i, std::size_t j) {
+  Barycentric point{};
+  point[i] += 0.5;
+  point[j] += 0.5;
+  return point;
+}
+
+/// Whether the vertices of a triangle touch, and whether they stick.
+using VertexStates = std::array<std::array<bool, 3>, 2>;
+
+/// Parts in which all is alike: what holds at a vertex does up to the middles of its edges, and
+/// what holds at two of them between these.
+std::vector<TrianglePart> parts_of(const VertexStates &holds) {
+  const auto count = [](const std::array<bool, 3> &of) { return std::ranges::count(of, true); };
+  const std::array<std::ptrdiff_t, 2> counts{count(holds[0]), count(holds[1])};
+  const std::array<bool, 2> most{counts[0] > 1, counts[1] > 1};
+  if (std::ranges::all_of(counts, [](std::ptrdiff_t of) { return of % 3 == 0; }))
+    return {{{between(0, 0), between(1, 1), between(2, 2)}, 1, most}};
+  std::vector<TrianglePart> parts{{{between(0, 1), between(1, 2), between(2, 0)}, 0.25, most}};
+  for (std::size_t v = 0; v < 3; ++v)
+    parts.push_back({{between(v, v), between(v, (v + 1) % 3), between(v, (v + 2) % 3)},
+                     0.25,
+                     {holds[0][v], holds[1][v]}});
+  return parts;
+}
 
 /// Gauss's lines from the edges at the first vertex to each other, then the edges.
 std::vector<Across> lines_across() {
@@ -51,10 +87,11 @@ public:
                                                       : Vector(shear_.colwise().norm());
     const Vector most = pressed.unaryExpr([&](double p) { return bound.value(p); });
     const double violation = friction_violation(sizes, most);
-    touches_ = (pressed.array() > least).select(Vector::Ones(pressed.size()), -1);
-    sticks_ = touches_;
-    for (Index i = 0; i < sticks_.size(); ++i)
-      if (!(most[i] > 0 && sticks_by(sizes[i], most[i], violation) > 0)) sticks_[i] = -1;
+    for (Index i = 0; i < pressed.size(); ++i) {
+      touches_.push_back(pressed[i] > least);
+      sticks_.push_back(touches_.back() && most[i] > 0 &&
+                        sticks_by(sizes[i], most[i], violation) > 0);
+    }
   }
 
   void add_lines(Index triangle, const std::vector<Across> &across,
@@ -62,29 +99,27 @@ public:
     const int *nodes = grid_.cells.data() + triangle * grid_.per_cell;
     const auto at = [&](int i) { return Eigen::Vector3d(points_.col(nodes[i])); };
     const double area = (at(1) - at(0)).cross(at(2) - at(0)).norm() / 2;
-    for (const Across &line : across) {
-      std::vector<double> cuts{0, 1};
-      for (const Vector *level : {&touches_, &sticks_}) {
-        const double a = level_at(*level, nodes, line.at(0)),
-                     b = level_at(*level, nodes, line.at(1));
-        if (a * b < 0) cuts.push_back(a / (a - b));
-      }
-      std::ranges::sort(cuts);
-      for (std::size_t i = 1; i < cuts.size(); ++i) {
-        const double from = cuts[i - 1], to = cuts[i], middle = (from + to) / 2;
-        if (!(to > from)) continue;
-        ContactLine part{{fields_at(nodes, line.at(from)), fields_at(nodes, line.at(to)),
-                          fields_at(nodes, line.at(middle))},
-                         {},
-                         (to - from) * line.share * area};
-        for (OutputFields &fields : part.fields) {
-          fields[field::contact] = level_at(touches_, nodes, line.at(middle)) > 0 ? 1 : 0;
-          fields[field::stick] = level_at(sticks_, nodes, line.at(middle)) > 0 ? 1 : 0;
-        }
-        part.seen = part.fields;
-        lines.push_back(part);
-      }
+    VertexStates holds;
+    for (std::size_t v = 0; v < 3; ++v) {
+      holds[0][v] = touches_[nodes[v]];
+      holds[1][v] = sticks_[nodes[v]];
     }
+    for (const TrianglePart &part : parts_of(holds))
+      for (const auto &[ends, share] : across) {
+        const Barycentric from = part.at(ends[0]), to = part.at(ends[1]);
+        Barycentric middle{};
+        for (std::size_t i = 0; i < 3; ++i)
+          middle[i] = (from[i] + to[i]) / 2;
+        ContactLine line{{fields_at(nodes, from), fields_at(nodes, to), fields_at(nodes, middle)},
+                         {},
+                         share * part.share * area};
+        for (OutputFields &fields : line.fields) {
+          fields[field::contact] = part.of_vertices[0] ? 1 : 0;
+          fields[field::stick] = part.of_vertices[1] ? 1 : 0;
+        }
+        line.seen = line.fields;
+        lines.push_back(line);
+      }
   }
 
 private:
@@ -95,11 +130,7 @@ private:
       return Matrix::Constant(components, grid_.points.rows(), none);
     return found->values.reshaped(components, grid_.points.rows());
   }
-  /// Linear between the vertices.
-  static double level_at(const Vector &level, const int *nodes, const std::array<double, 4> &at) {
-    return at[0] * level[nodes[0]] + at[1] * level[nodes[1]] + at[2] * level[nodes[2]];
-  }
-  OutputFields fields_at(const int *nodes, const std::array<double, 4> &at) const {
+  OutputFields fields_at(const int *nodes, const Barycentric &at) const {
     std::array<double, most_nodes> phi{};
     lagrange_values(2, degree_, at, phi);
     const auto of = [&](const Matrix &values) {
@@ -124,7 +155,7 @@ private:
   const Grid &grid_;
   int degree_;
   Matrix points_, u_, slip_, shear_, pressure_, gap_;
-  Vector touches_, sticks_; ///< 1 or -1 at each node
+  std::vector<bool> touches_, sticks_; ///< at each node
 };
 
 } // namespace

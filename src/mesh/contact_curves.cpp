@@ -50,6 +50,32 @@ std::vector<double> angles(const SerialMesh &mesh) {
   return result;
 }
 
+using VertexPair = std::pair<int, int>; ///< the smaller one first
+
+/// Per edge of the rim of a boundary in three dimensions the angle of all cells there.
+std::map<VertexPair, double> rim_angles(const SerialMesh &mesh, const std::string &boundary) {
+  const std::vector<Facet> own = facets_of(mesh, boundary);
+  std::map<VertexPair, std::array<bool, 2>> beside; // facets of the boundary, others
+  for (const Facet &facet : outer_facets(mesh))
+    for (std::size_t i = 0; i < 3; ++i)
+      beside[std::minmax(facet[i], facet[(i + 1) % 3])]
+            [std::ranges::binary_search(own, facet) ? 0 : 1] = true;
+  std::map<VertexPair, double> angles;
+  for (const auto &[edge, both] : beside)
+    if (both[0] && both[1]) angles[edge] = 0;
+  constexpr std::array<std::array<std::size_t, 4>, 6> edges{
+      {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}}};
+  for (const auto &cell : mesh.cells)
+    for (const auto &[a, b, c, d] : edges) {
+      const auto found = angles.find(std::minmax(cell[a], cell[b]));
+      if (found == angles.end()) continue;
+      const auto at = [&](std::size_t i) { return mesh.points[cell[i]] - mesh.points[cell[a]]; };
+      const Point one = cross(at(b), at(c)), other = cross(at(b), at(d));
+      found->second += std::atan2(norm(cross(one, other)), dot(one, other));
+    }
+  return angles;
+}
+
 /// The largest distance of an edge of a piece that is on no curve of the case from the arc through
 /// its vertices, where it turns alike at both of them: what turns once is a corner.
 double off_its_arc(const SerialMesh &mesh, const CurvePiece &piece,
@@ -111,25 +137,10 @@ std::vector<CurvePiece> curve_pieces(const SerialMesh &mesh, const std::string &
 }
 
 std::vector<PetscInt> open_rim(const SerialMesh &mesh, const std::string &boundary) {
-  const std::vector<Facet> own = facets_of(mesh, boundary);
-  const auto is_own = [&](const Facet &facet) { return std::ranges::binary_search(own, facet); };
-  // Planes of facets have no side here: two that meet in a sharp edge are at more than sharp_turn,
-  // whichever way each is seen, unless the body is a sheet.
-  const auto normal = [&](const Facet &facet) {
-    const Point &a = mesh.points[facet[0]];
-    const Point across = cross(mesh.points[facet[1]] - a, mesh.points[facet[2]] - a);
-    return across / norm(across);
-  };
-  std::map<std::pair<int, int>, std::vector<Facet>> around;
-  for (const Facet &facet : outer_facets(mesh))
-    for (std::size_t i = 0; i < 3; ++i)
-      around[std::minmax(facet[i], facet[(i + 1) % 3])].push_back(facet);
+  constexpr double widest = std::numbers::pi - sharp_turn; // as of curve_pieces
   std::set<PetscInt> vertices;
-  for (const auto &[edge, facets] : around) {
-    if (facets.size() != 2 || is_own(facets[0]) == is_own(facets[1])) continue;
-    if (std::abs(dot(normal(facets[0]), normal(facets[1]))) > std::cos(sharp_turn))
-      vertices.insert({edge.first, edge.second});
-  }
+  for (const auto &[edge, angle] : rim_angles(mesh, boundary))
+    if (!(angle < widest)) vertices.insert({edge.first, edge.second});
   return {vertices.begin(), vertices.end()};
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 namespace rbvi::contact_lines_test {
 namespace {
@@ -128,6 +129,70 @@ TEST(ContactLines, StickEndsInsideAnEdge) {
   }
   EXPECT_NEAR(measure(contact_lines(line(pressed, closed, both, ways), bound, 0), field::stick),
               0.06, 1e-12);
+}
+
+/// Triangles of [0, 1] x [0, 1], halves of squares of side 1/4, in space.
+Grid squares(const std::function<std::array<double, 2>(double, double)> &pressure_and_shear) {
+  constexpr int n = 4;
+  Grid grid;
+  grid.per_cell = 3;
+  grid.points = Matrix::Zero((n + 1) * (n + 1), 3);
+  Vector pressure(grid.points.rows()), shear(3 * pressure.size());
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) {
+      const Index node = i + (n + 1) * j;
+      grid.points(node, 0) = i / double(n);
+      grid.points(node, 1) = j / double(n);
+      const auto [p, t] = pressure_and_shear(i / double(n), j / double(n));
+      pressure[node] = p;
+      shear.segment<3>(3 * node) << 0.6 * t, -0.8 * t, 0;
+    }
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const int a = i + (n + 1) * j, c = a + n + 2;
+      for (const int b : {a + 1, a + n + 1})
+        grid.cells.insert(grid.cells.end(), {a, b, c});
+    }
+  grid.of_nodes = {{"u", Vector::Zero(3 * pressure.size())},
+                   {"pressure", pressure},
+                   {"tangential_stress", shear}};
+  return grid;
+}
+
+/// Nodes touch up to x = 3/4 and stick up to x = 1/4, and so it is up to the middles of the edges
+/// beyond them.
+TEST(ContactLines, OfTrianglesHaveTheAreasOfTheirNodes) {
+  const auto areas = [](const std::vector<ContactLine> &lines) {
+    std::array<double, 4> sums{}; // whole, in contact, sticking, the integral of x y over that
+    for (const auto &[fields, seen, measure] : lines) {
+      const auto &[first, last, middle] = fields;
+      sums[0] += measure;
+      sums[1] += measure * middle[field::contact];
+      sums[2] += measure * middle[field::stick];
+      for (const auto &[at, weight] : {std::pair{&first, 1.0}, {&last, 1.0}, {&middle, 4.0}})
+        sums[3] += measure * weight / 6 * (*at)[field::stick] * (*at)[field::x] * (*at)[field::y];
+    }
+    return sums;
+  };
+  const FrictionBound bound{0.5};
+  const auto [whole, contact, stick, moment] = areas(
+      contact_lines(squares([](double x, double) {
+                      return x < 0.8 ? std::array{2.0, x < 0.3 ? 0.4 : 1.0} : std::array{0.0, 0.0};
+                    }),
+                    bound, 0));
+  EXPECT_NEAR(whole, 1, 1e-14);
+  EXPECT_NEAR(contact, 0.875, 1e-14);
+  EXPECT_NEAR(stick, 0.375, 1e-14);
+  EXPECT_NEAR(moment, 0.375 * 0.375 / 4, 1e-14);
+  // A single node has a quarter of its triangles, one that is out leaves the rest of them.
+  const auto [all, of_one, of_others, ignored] =
+      areas(contact_lines(squares([](double x, double y) {
+                            const bool one = x == 0.5 && y == 0.5;
+                            return std::array{2.0, one ? 0.4 : 1.0};
+                          }),
+                          bound, 0));
+  EXPECT_NEAR(of_others, 6 * 0.25 / 32, 1e-14);
+  EXPECT_NEAR(of_one, 1, 1e-14);
 }
 
 } // namespace

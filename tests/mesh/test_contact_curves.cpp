@@ -138,6 +138,44 @@ TEST(ContactCurves, ABodyEndsWhereItsSurfaceTurnsAway) {
   EXPECT_EQ(closed_ends(part, name), (Ends{true, false})) << "a part of a flat face";
 }
 
+/// A prism over triangles A B C, B C D, ..., from z = 0 to 1: its foot, on y = 0 from A = (-1, 0)
+/// to B, and the sides that begin there at these angles, inside of the body, from the foot.
+SerialMesh prism(const std::vector<double> &degrees) {
+  SerialMesh mesh;
+  mesh.dim = 3;
+  std::vector<Point> outline{{0, 0, 0}, {-1, 0, 0}};
+  for (const double of : degrees)
+    outline.push_back({-std::cos(of * M_PI / 180), std::sin(of * M_PI / 180), 0});
+  for (const double z : {0.0, 1.0})
+    for (Point x : outline) {
+      x[2] = z;
+      mesh.points.push_back(x);
+    }
+  const auto up = static_cast<int>(outline.size());
+  for (int k = 2; k < up; ++k) // the triangle 0, k - 1, k and that above it
+    for (const auto &cell : {std::array{0, k - 1, k, up + k},
+                             {0, k - 1, up + k - 1, up + k},
+                             {0, up, up + k - 1, up + k}})
+      mesh.cells.push_back(cell);
+  mesh.boundary[name] = {{0, 1, up + 1}, {0, up, up + 1}};
+  return mesh;
+}
+
+TEST(ContactCurves, ASolidEndsWhereItsSurfaceTurnsAway) {
+  const auto open = [](const std::vector<double> &degrees) {
+    const std::vector<PetscInt> rim = open_rim(prism(degrees), name);
+    const auto up = static_cast<PetscInt>(degrees.size() + 2);
+    EXPECT_TRUE(rim.empty() || rim == (std::vector<PetscInt>{0, up}));
+    return !rim.empty();
+  };
+  EXPECT_FALSE(open({20})) << "a blade is sharp, though both of its sides are nearly in one plane";
+  EXPECT_FALSE(open({90}));
+  EXPECT_FALSE(open({70, 135})) << "a chamfer";
+  EXPECT_TRUE(open({75, 150})) << "a fillet in coarse steps";
+  EXPECT_TRUE(open({90, 180})) << "a part of a flat side";
+  EXPECT_TRUE(open({75, 150, 225})) << "a notch, beyond which the body goes on";
+}
+
 TEST(ContactCurves, LoadsAndContactAreOnTheSurface) {
   Scene scene = block();
   scene.mesh.facts.clear();

@@ -62,7 +62,8 @@ struct ContactLine {
 /// (contact_area.hpp); of pressures that are constant on edges they are of whole edges, and by
 /// Nitsche's method they end where P_n, or what |P_tau| is below its bound, is zero, linear between
 /// the vertices. Of triangles they end in the middle of edges from a vertex that is in to one that
-/// is out, and lines without a measure lie along the edges, where extrema are.
+/// is out, straight between these, and lines without a measure lie along the edges, where extrema
+/// are.
 std::vector<ContactLine> contact_lines(const Grid &grid, const FrictionBound &bound, double least);
 
 } // namespace rbvi
