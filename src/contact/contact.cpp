@@ -238,8 +238,9 @@ NodeLaws laws_at(const Contact &contact, const FullMu &mu) {
   for (const auto &interface : contact.interfaces) {
     const DualSpace &dual = interface->dual();
     NodeLaws own = uniform_laws(dual.nodes(), dual.components, interface->bound(mu));
-    for (const Index node : interface->partly_fixed())
-      own.bound[node] = {};
+    own.free = interface->free_tangents();
+    for (Index node = 0; node < own.nodes(); ++node)
+      if (own.free[node] == 0) own.bound[node] = {};
     append(own, laws);
   }
   return laws;

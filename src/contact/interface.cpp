@@ -28,6 +28,13 @@ std::vector<Index> ContactInterface::partly_fixed() const {
   return nodes;
 }
 
+std::vector<int> ContactInterface::free_tangents() const {
+  std::vector<int> free(static_cast<std::size_t>(dual_.nodes()), dual_.components - 1);
+  for (const Index node : partly_fixed())
+    free[node] = 0;
+  return free;
+}
+
 Curvature ContactInterface::curvature(const FullMu &, const ContactState &, const Vector &) const {
   throw failure("this kind of contact has no curvature");
 }

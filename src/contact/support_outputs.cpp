@@ -84,7 +84,8 @@ void make_whole(const MirrorPlanes &mirrors, Outputs &outputs) {
         &Outputs::horizontal_reaction, &Outputs::force_x, &Outputs::force_y, &Outputs::force_z,
         &Outputs::contact_measure, &Outputs::contact_half_width, &Outputs::stick_half_width})
     if (std::optional<double> &of_domain = outputs.*member) *of_domain *= images;
-  if (outputs.slip_directions) // an image slips the other way
+  // An image slips the other way; what counts in space has seen the images.
+  if (outputs.slip_directions && !outputs.force_x)
     outputs.slip_directions = std::min(images * *outputs.slip_directions, 2.0);
   if (cancels(mirrors, 0)) outputs.horizontal_reaction.reset();
   if (cancels(mirrors, 1)) outputs.reaction.reset();

@@ -1,6 +1,5 @@
 #include "surface_support.hpp"
 
-#include "frames.hpp"
 #include "rbvi/contact/entity_sum.hpp"
 #include "rbvi/contact/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
@@ -8,6 +7,7 @@
 #include "rbvi/element/cell_fields.hpp"
 #include "rbvi/element/facets.hpp"
 #include "rbvi/element/quadrature.hpp"
+#include "surface_frames.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,6 +50,7 @@ public:
     values.weights.setConstant(facet_measure(3, facet.mapped).size / corners);
   }
   FrictionBound bound(const FullMu &mu) const override { return friction_bound(friction_, mu); }
+  std::vector<int> free_tangents() const override;
   PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &,
                                 const Point &displacement) const override {
     const FacedPoint at = facing_.at(mu, place(scene_, facing_, mu, x), displacement);
@@ -81,8 +82,6 @@ private:
   double tangential_force(const FullMu &mu, const Vector &lambda) const;
   Vector shear_sizes(const Vector &lambda) const;
   double direction_count(const FullMu &mu, const Vector &lambda) const;
-  std::vector<Point> vertex_normals() const;
-  SparseMatrix gram() const;
   void check_body_normal() const;
 
   Facing facing_;
@@ -104,17 +103,14 @@ SurfaceSupport::SurfaceSupport(const Scene &scene, InterfaceMesh interface_mesh,
   if (mesh_.components != 3 || mesh_.per_entity != nodes_per_cell(2, mesh_.degree) ||
       mesh_.count() == 0)
     throw bad_input("scene " + scene.name + ": contact of a solid is along triangles");
-  if (!scene.mirrors.empty() && friction_.law != FrictionLaw::none)
-    throw bad_input("friction on a plane of symmetry is that of whole bodies in space: leave out "
-                    "mirror");
   vertices_ = 1 + *std::ranges::max_element(mesh_.entities, {}, [&](const int &node) {
                 const auto at = &node - mesh_.entities.data();
                 return at % mesh_.per_entity < static_cast<std::ptrdiff_t>(corners) ? node : -1;
               });
-  for (const Point &n : vertex_normals())
-    frames_.push_back(frame_of(n));
+  frames_ = reference_frames(mesh_, vertices_);
   check_body_normal();
-  set_dual(vertices_, friction_.law == FrictionLaw::none ? 1 : 3, rigid.lumped, gram());
+  const bool friction = friction_.law != FrictionLaw::none;
+  set_dual(vertices_, friction ? 3 : 1, rigid.lumped, surface_gram(mesh_, frames_, friction));
   for (Index v = 0; v < vertices_; ++v) {
     at_.emplace(mesh_.points[v], static_cast<int>(v));
     owner_.push_back(dual_of_vertex()[v] < 0 ? v : dual_.vertices[dual_of_vertex()[v]]);
@@ -122,47 +118,11 @@ SurfaceSupport::SurfaceSupport(const Scene &scene, InterfaceMesh interface_mesh,
   images_ = image_counts(scene.mirrors, dual_.points);
 }
 
-/// Of the reference triangles about each, by their sizes.
-std::vector<Point> SurfaceSupport::vertex_normals() const {
-  std::vector<Point> normals(static_cast<std::size_t>(vertices_), Point{});
-  for (Index e = 0; e < mesh_.count(); ++e) {
-    const auto [size, normal] = facet_measure(3, reference_entity(e).reference);
-    for (std::size_t a = 0; a < corners; ++a) {
-      Point &sum = normals[mesh_.nodes_of(e)[a]];
-      sum = sum + size * normal;
-    }
-  }
-  for (Point &n : normals) {
-    if (!(norm(n) > 0)) throw bad_input("a surface in contact folds back on itself at a vertex");
-    n = n / norm(n);
-  }
-  return normals;
-}
-
-/// Of hats and, with friction, of hats along the tangents of their nodes.
-SparseMatrix SurfaceSupport::gram() const {
-  const bool friction = friction_.law != FrictionLaw::none;
-  std::vector<Eigen::Triplet<double>> entries;
-  for (Index e = 0; e < mesh_.count(); ++e) {
-    const double size = facet_measure(3, reference_entity(e).reference).size;
-    const int *nodes = mesh_.nodes_of(e);
-    for (std::size_t a = 0; a < corners; ++a)
-      for (std::size_t b = 0; b < corners; ++b) {
-        const Index i = nodes[a], j = nodes[b];
-        const double product = size * (a == b ? 2 : 1) / 12;
-        entries.emplace_back(i, j, product);
-        for (std::size_t k = 0; k < 2 && friction; ++k)
-          for (std::size_t l = 0; l < 2; ++l)
-            entries.emplace_back(
-                vertices_ + 2 * i + static_cast<Index>(k),
-                vertices_ + 2 * j + static_cast<Index>(l),
-                product * dot(carried(frames_[i], k, frames_[j].normal), frames_[j].tangents[l]));
-      }
-  }
-  const Index size = (friction ? 3 : 1) * vertices_;
-  SparseMatrix result(size, size);
-  result.setFromTriplets(entries.begin(), entries.end());
-  return result;
+std::vector<int> SurfaceSupport::free_tangents() const {
+  std::vector<int> free;
+  for (const Index vertex : dual_.vertices)
+    free.push_back(frames_[vertex].free);
+  return free;
 }
 
 /// Throws bad_input where the normal of the body is not that of its triangles.
@@ -208,7 +168,7 @@ Frame SurfaceSupport::frame_at(const FullMu &mu, Index vertex) const {
   const Point &x = mesh_.points[owner_[vertex]],
               n = facing_.normal ? facing_.normal(mu, curve_point(facing_, x))
                                  : facing_.at(mu, place(scene_, facing_, mu, x), {}).normal;
-  return {n, {carried(frame, 0, n), carried(frame, 1, n)}};
+  return {n, {carried(frame, 0, n), carried(frame, 1, n)}, frame.free};
 }
 
 /// Vertices of sampled triangles are known by where they are. Not used without friction.
@@ -236,9 +196,9 @@ void SurfaceSupport::integrate(const FullMu &mu, const Cell &facet, EntityValues
       if (eta == 0) continue;
       const auto row = static_cast<Index>(a);
       add(row, eta, here.normal, here.gap);
-      for (std::size_t k = 0; k < 2 && friction; ++k) {
+      for (int k = 0; k < frames[a].free && friction; ++k) {
         const Point t = carried(frames[a], k, here.normal);
-        add(static_cast<Index>(corners + 2 * a + k), eta, t, -dot(t, motion));
+        add(static_cast<Index>(corners + 2 * a) + k, eta, t, -dot(t, motion));
       }
     }
   }
@@ -302,7 +262,8 @@ Vector SurfaceSupport::shear_sizes(const Vector &lambda) const {
   return lambda.tail(2 * dual_.nodes()).reshaped(2, dual_.nodes()).colwise().norm();
 }
 
-/// 1 where the tangential tractions of all nodes in contact have a part along their sum, else 2.
+/// 1 where the tangential tractions of all nodes of the whole body in contact have a part along
+/// their sum, else 2.
 double SurfaceSupport::direction_count(const FullMu &mu, const Vector &lambda) const {
   std::vector<Point> tractions;
   Point sum{};
@@ -315,7 +276,17 @@ double SurfaceSupport::direction_count(const FullMu &mu, const Vector &lambda) c
           traction + lambda[dual_.nodes() + 2 * i + static_cast<Index>(k)] * frame.tangents[k];
     sum = sum + traction;
   }
-  return std::ranges::all_of(tractions, [&](const Point &of) { return dot(of, sum) > 0; }) ? 1 : 2;
+  for (const MirrorPlane &plane : mirrors())
+    sum[static_cast<std::size_t>(plane.component)] = 0;
+  constexpr double round_off = 1e-9; // of the largest: where a traction is zero by symmetry
+  double largest = 0;
+  for (const Point &of : tractions)
+    largest = std::max(largest, norm(of));
+  return std::ranges::all_of(
+             tractions,
+             [&](const Point &of) { return dot(of, sum) > 0 || norm(of) <= round_off * largest; })
+             ? 1
+             : 2;
 }
 
 void SurfaceSupport::outputs(const FullMu &mu, const ContactOperators &operators,

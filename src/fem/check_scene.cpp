@@ -302,6 +302,7 @@ void check_mirror(const Problem &problem, const MirrorPlane &plane) {
   const auto c = static_cast<std::size_t>(plane.component);
   const FullMu mu = generic_point(scene.parameters);
   const std::vector<Point> &points = problem.mesh().points;
+  const Vector imposed = imposed_values(scene, mu, points, dofs.imposed_by);
   std::vector<double> beyond{-1e300, -1e300}, found{0, 0}; // on both sides; moved, loose
   for (const Point &x : points) {
     beyond[0] = std::max(beyond[0], plane.position - x[c]);
@@ -322,7 +323,7 @@ void check_mirror(const Problem &problem, const MirrorPlane &plane) {
     if (scene.components == 1) continue;
     if (scene.motion) found[0] = std::max(found[0], std::abs(scene.motion(mu, points[node])[c]));
     const std::size_t dof = node * static_cast<std::size_t>(scene.components) + c;
-    if (dofs.free[dof] >= 0 || (!dofs.imposed_by.empty() && dofs.imposed_by[dof] >= 0))
+    if (dofs.free[dof] >= 0 || (imposed.size() > 0 && std::abs(imposed[dof]) > round_off))
       found[1] = 1;
   }
   over_ranks(problem.comm(), MPI_MAX, found);
@@ -333,6 +334,22 @@ void check_mirror(const Problem &problem, const MirrorPlane &plane) {
                     ": 0 on the whole boundary that is there");
 }
 
+/// Throws bad_input where what the body meets is not its own image.
+void check_faced(const Problem &problem, const MirrorPlane &plane, const FullMu &mu) {
+  constexpr double askew = 1e-2; // of normals that should be in the plane
+  for (const auto &interface : problem.contact().interfaces) {
+    if (interface->entity_sum() == nullptr || interface->mesh().components == 1) continue;
+    const std::vector<Point> &points = interface->dual().points;
+    const Vector images = image_counts({plane}, points);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (images[static_cast<Index>(i)] == 1 &&
+          std::abs(interface->constraint_at(mu, points[i]).direction[plane.component]) > askew)
+        throw bad_input(std::string("what the body meets at the plane of symmetry ") +
+                        "xyz"[plane.component] + " = " + short_number(plane.position) +
+                        " is not its own image: its normal leaves the plane there");
+  }
+}
+
 } // namespace
 
 void check_scene(const Problem &problem) {
@@ -341,6 +358,10 @@ void check_scene(const Problem &problem) {
   std::vector<double> outward, inward;
   for (const MirrorPlane &plane : scene.mirrors)
     check_mirror(problem, plane);
+  collectively(problem.comm(), [&] {
+    for (const MirrorPlane &plane : scene.mirrors)
+      check_faced(problem, plane, mu);
+  });
   const std::vector<int> materials = materials_of_cells(scene, problem.mesh());
   collectively(problem.comm(), [&] {
     check_material(problem, materials);

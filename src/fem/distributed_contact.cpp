@@ -106,6 +106,7 @@ NodeLaws own_laws(const DualLayout &layout, const NodeLaws &laws) {
     own.normal.push_back(own.rows);
     own.tangent.push_back(with_tangent ? own.rows + 1 : -1);
     own.bound.push_back(laws.bound[node]);
+    own.free.push_back(laws.free_at(node));
     own.rows += 1 + (with_tangent ? laws.tangents : 0);
   }
   return own;

@@ -71,8 +71,8 @@ Vector smooth_start(const Vector &diagonal, const NodeLaws &laws, const State &p
   Vector result = diagonal;
   for (Index i = 0; laws.tangents == 2 && i < laws.nodes(); ++i)
     if (laws.has_tangent(i)) {
-      auto tangential = result.segment(laws.tangent[i], 2);
-      tangential.setConstant(tangential.mean());
+      const double mean = tangential_diagonal(result, laws, i);
+      result.segment(laws.tangent[i], 2).setConstant(mean);
     }
   const Index known = (result.array() > 0).count();
   const double mean = known > 0 ? result.sum() / static_cast<double>(known) : 1;

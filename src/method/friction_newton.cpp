@@ -1,6 +1,5 @@
 #include "friction_newton.hpp"
 
-
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +17,7 @@ bool is_negative(const Eigen::PartialPivLU<Matrix> &lu) {
 
 double tangential_diagonal(const Vector &diagonal, const NodeLaws &laws, Index i) {
   const Index t = laws.tangent[i];
-  return laws.tangents == 1 ? diagonal[t] : (diagonal[t] + diagonal[t + 1]) / 2;
+  return laws.free_at(i) < 2 ? diagonal[t] : (diagonal[t] + diagonal[t + 1]) / 2;
 }
 
 ActiveSets::ActiveSets(const NodeLaws &laws)
@@ -32,7 +31,7 @@ std::vector<Index> ActiveSets::support(const NodeLaws &laws) const {
   for (Index i = 0; i < laws.nodes(); ++i)
     if (is_active(i)) result.push_back(laws.normal[i]);
   for (Index i = 0; i < laws.nodes(); ++i)
-    for (Index k = 0; k < laws.tangents && tangent_at(i) != Tangent::none; ++k)
+    for (Index k = 0; k < laws.free_at(i) && tangent_at(i) != Tangent::none; ++k)
       result.push_back(laws.tangent[i] + k);
   return result;
 }
@@ -72,7 +71,9 @@ ActiveSets predicted_sets(const NodeLaws &laws, const Vector &y) {
     const FrictionBound &law = laws.friction_at(i);
     result.active[i] = normal > 0;
     if (!law.carries_traction(normal > 0)) continue;
-    const auto tangential = y.segment(laws.tangent[i], laws.tangents);
+    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2, 1> tangential =
+        y.segment(laws.tangent[i], laws.tangents);
+    tangential.tail(laws.tangents - laws.free_at(i)).setZero();
     const double size = tangential.norm();
     const bool slips = size > 0 && size >= (1 - round_off) * law.value(normal);
     result.tangent[i] = slips ? Tangent::slip : Tangent::stick;
@@ -105,9 +106,9 @@ std::vector<Unknown> unknowns(const NodeLaws &laws, const ActiveSets &sets) {
       if (slips) result.back().slope = sets.piece_of(laws, i).slope;
     }
     if (sets.tangent_at(i) == Tangent::none) continue;
-    for (Index k = 0; k < laws.tangents && !slips; ++k)
+    for (Index k = 0; k < laws.free_at(i) && !slips; ++k)
       result.push_back({.node = i, .first = t + k, .second = t + k});
-    if (slips && laws.tangents == 2 && sets.curvature[i] >= 0)
+    if (slips && laws.free_at(i) == 2 && sets.curvature[i] >= 0)
       result.push_back({.node = i,
                         .first = t,
                         .second = t + 1,
@@ -189,7 +190,7 @@ void System::assemble(const LazyColumns &h, const NodeLaws &laws) {
     column = u.a * h.column(u.first);
     if (u.b != 0) column += u.b * h.column(u.second);
     if (u.slope > 0)
-      for (int j = 0; j < laws.tangents; ++j)
+      for (int j = 0; j < laws.free_at(u.node); ++j)
         column += u.slope * sets_.direction(j, u.node) * h.column(laws.tangent[u.node] + j);
     auto of_rows = matrix_.col(k);
     for (Index r = 0; r < count; ++r) // twice as fast as an expression with indices

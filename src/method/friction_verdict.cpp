@@ -69,11 +69,11 @@ private:
     else
       next = sets_.tangent_at(i);
   }
-  /// Tangential components of a node; in the plane the second one is zero.
+  /// Tangential components of a node; where one is free the second one is zero.
   using Pair = std::array<double, 2>;
   Pair tangential(const Vector &of, Index i) const {
     const Index t = laws_.tangent[i];
-    return {of[t], laws_.tangents == 2 ? of[t + 1] : 0};
+    return {of[t], laws_.free_at(i) == 2 ? of[t + 1] : 0};
   }
   static double size_of(const Pair &p) {
     return p[1] == 0 ? std::abs(p[0]) : std::hypot(p[0], p[1]);

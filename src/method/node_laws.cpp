@@ -55,6 +55,7 @@ NodeLaws uniform_laws(Index nodes, int components, const FrictionBound &bound) {
     laws.tangent.push_back(components > 1 ? nodes + i * (components - 1) : -1);
   }
   laws.bound.assign(nodes, bound);
+  laws.free.assign(nodes, components - 1);
   return laws;
 }
 
@@ -64,6 +65,7 @@ void append(const NodeLaws &part, NodeLaws &laws) {
     laws.normal.push_back(laws.rows + part.normal[i]);
     laws.tangent.push_back(part.has_tangent(i) ? laws.rows + part.tangent[i] : -1);
     laws.bound.push_back(part.bound[i]);
+    laws.free.push_back(part.has_tangent(i) ? part.free_at(i) : 0);
     if (part.has_tangent(i)) laws.tangents = part.tangents;
   }
   laws.rows += part.rows;
@@ -98,6 +100,7 @@ Vector admissible(const NodeLaws &laws, Vector x) {
     normal = std::max(normal, 0.0);
     if (!laws.has_tangent(i)) continue;
     auto tangential = x.segment(laws.tangent[i], laws.tangents);
+    tangential.tail(laws.tangents - laws.free_at(i)).setZero();
     const double size = tangential.norm(), limit = laws.bound[i].value(normal);
     if (size > limit) tangential *= limit / size;
   }

@@ -7,16 +7,17 @@ namespace rbvi {
 
 ColumnLaws laws_of_columns(const Contact &contact, const Matrix &dual_basis) {
   const std::size_t interfaces = contact.interfaces.size();
-  std::vector<std::vector<Index>> normal(interfaces), tangent(interfaces), fixed(interfaces);
+  std::vector<std::vector<Index>> normal(interfaces), tangent(interfaces);
+  std::vector<std::vector<int>> free(interfaces);
   for (std::size_t i = 0; i < interfaces; ++i)
-    fixed[i] = contact.interfaces[i]->partly_fixed();
-  std::vector<bool> without_bound(dual_basis.cols(), false);
+    free[i] = contact.interfaces[i]->free_tangents();
+  std::vector<int> of_column(dual_basis.cols());
   for (Index column = 0; column < dual_basis.cols(); ++column) {
     Index row = 0;
     dual_basis.col(column).cwiseAbs().maxCoeff(&row);
     const DualRow of = dual_row(contact, row);
     (of.normal ? normal : tangent)[of.interface].push_back(column);
-    without_bound[column] = std::ranges::binary_search(fixed[of.interface], of.node);
+    of_column[column] = free[of.interface][of.node];
   }
   ColumnLaws columns;
   NodeLaws &laws = columns.laws;
@@ -29,7 +30,7 @@ ColumnLaws laws_of_columns(const Contact &contact, const Matrix &dual_basis) {
       laws.normal.push_back(normal[i][k]);
       laws.tangent.push_back(tangent[i].empty() ? -1 : tangent[i].at(each * k));
       columns.interface_of.push_back(static_cast<int>(i));
-      columns.without_bound.push_back(without_bound[normal[i][k]]);
+      laws.free.push_back(of_column[normal[i][k]]);
     }
   laws.bound.resize(laws.normal.size());
   return columns;
@@ -40,8 +41,7 @@ NodeLaws laws_at(const ColumnLaws &columns, const Contact &contact, const FullMu
   for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
     const FrictionBound bound = contact.interfaces[i]->bound(mu);
     for (std::size_t k = 0; k < laws.bound.size(); ++k)
-      if (columns.interface_of[k] == static_cast<int>(i) && !columns.without_bound[k])
-        laws.bound[k] = bound;
+      if (columns.interface_of[k] == static_cast<int>(i) && laws.free[k] > 0) laws.bound[k] = bound;
   }
   return laws;
 }

@@ -397,4 +397,43 @@ TEST(Friction, DoesNotDependOnUnits) {
     }
 }
 
+/// Nodes in space of which each has one free tangent, as on a plane of symmetry, answer as in the
+/// plane; no column of the others is asked for.
+TEST(Friction, NodesWithOneFreeTangentAnswerAsInThePlane) {
+  Random random(7);
+  for (int k = 0; k < 30; ++k)
+    for (const FrictionBound &bound : all_bounds) {
+      if (bound.only_in_contact) continue;
+      const Index nodes = 2 + k % 9;
+      const Matrix h = random_positive(random, 2 * nodes, 1e-2);
+      const Vector q = random.vector(2 * nodes);
+      std::vector<Index> rows; // in space
+      for (Index i = 0; i < nodes; ++i)
+        rows.push_back(i);
+      for (Index i = 0; i < nodes; ++i)
+        rows.push_back(nodes + 2 * i);
+      Matrix in_space = Matrix::Zero(3 * nodes, 3 * nodes);
+      in_space(rows, rows) = h;
+      Vector q_in_space = Vector::Zero(3 * nodes);
+      q_in_space(rows) = q;
+      const ColumnSource columns = [&](const std::vector<Index> &which) {
+        for (const Index row : which)
+          EXPECT_TRUE(std::ranges::find(rows, row) != rows.end());
+        return Matrix(in_space(Eigen::all, which));
+      };
+      NodeLaws laws = uniform_laws(nodes, 3, bound);
+      laws.free.assign(nodes, 1);
+      Vector start = Vector::Ones(3 * nodes); // which the laws do not allow
+      const FrictionResult plane = solve_friction(
+          [&](const std::vector<Index> &which) { return Matrix(h(Eigen::all, which)); }, q,
+          uniform_laws(nodes, 2, bound));
+      const FrictionResult space = solve_friction(columns, q_in_space, laws, start);
+      ASSERT_TRUE(plane.converged && space.converged) << space.reason;
+      EXPECT_LE((space.x(rows) - plane.x).norm(), 1e-9 * plane.x.norm());
+      Vector across = space.x;
+      across(rows).setZero();
+      EXPECT_TRUE(across.isZero(0));
+    }
+}
+
 } // namespace rbvi::friction_test

@@ -38,8 +38,8 @@ struct InterfaceMesh {
   std::vector<int> edges; ///< cells beside a boundary: the local edge of each that is on it
   std::vector<int> parts; ///< number of nodes of each boundary, or region
   /// Of each piece of each boundary 1 or 0 for its first and for its last end: whether the body
-  /// ends there, so that contact may reach it; 1 of a closed curve. Empty: of one piece, nowhere. Of
-  /// a surface for each node: 0 on its rim where the surface of the body goes on smoothly.
+  /// ends there, so that contact may reach it; 1 of a closed curve. Empty: of one piece, nowhere.
+  /// Of a surface for each node: 0 on its rim where the surface of the body goes on smoothly.
   std::vector<int> closed_ends = {};
   /// node * components + c: column of B, a contact dof of the problem; -1: fixed, or not seen.
   std::vector<int> dofs;
@@ -139,6 +139,8 @@ public:
   /// Dual nodes that are fixed in some directions, as on an axis of symmetry: they carry no
   /// tangential traction, which for a symmetric answer is zero there.
   virtual std::vector<Index> partly_fixed() const;
+  /// Of each dual node how many of its tangents, from the first, can have a traction along them.
+  virtual std::vector<int> free_tangents() const;
 
   /// All of ContactOperators; by Nitsche's method nodal_b and nodal_gap alone. Rows of dual nodes
   /// that are not wanted may be left zero.

@@ -86,9 +86,13 @@ struct NodeLaws {
   std::vector<Index> normal;        ///< per node: its entry x_n
   std::vector<Index> tangent;       ///< per node: the first entry of x_tau, -1: there is none
   std::vector<FrictionBound> bound; ///< per node
+  /// Per node: the entries of x_tau, from the first, that need not be zero. H is zero in the rows
+  /// of the others, as of a traction across a plane of symmetry. Empty: all of them.
+  std::vector<int> free{};
 
   Index nodes() const { return static_cast<Index>(normal.size()); }
   bool has_tangent(Index node) const { return tangent[node] >= 0; }
+  int free_at(Index node) const { return free.empty() ? tangents : free[node]; }
   bool has_tangents() const; ///< some node
   /// Of x_tau at a node; of one without a tangent none.
   const FrictionBound &friction_at(Index node) const {

@@ -9,9 +9,8 @@
 namespace rbvi {
 
 struct ColumnLaws {
-  NodeLaws laws;                   ///< without bounds
-  std::vector<int> interface_of;   ///< of each node
-  std::vector<bool> without_bound; ///< ContactInterface::partly_fixed
+  NodeLaws laws;                 ///< without bounds
+  std::vector<int> interface_of; ///< of each node
 };
 
 /// `dual_basis`: dual size x columns.
