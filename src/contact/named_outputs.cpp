@@ -252,7 +252,9 @@ PointForces forces_of(const Contact &contact, std::size_t i, const FullMu &mu,
                       const OutputSources &sources, const Vector &lambda, bool of_friction) {
   const ContactInterface &interface = *contact.interfaces[i];
   Vector own = lambda.segment(contact.first_row[i], interface.dual().size());
-  if (of_friction) own.head(interface.dual().nodes()).setZero();
+  auto pressures = own.head(interface.dual().nodes());
+  pressures.array() -= interface.bound(mu).pull;
+  if (of_friction) pressures.setZero();
   PointForces forces = interface.point_forces(
       mu, {.displacement = at_columns(interface.mesh(), sources.of_interface(i))}, own);
   std::erase_if(forces, [](const PointForce &force) { return force.part != 0; });

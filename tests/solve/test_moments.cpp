@@ -26,22 +26,26 @@ const std::string head = "rbvi: 1\n"
                          "parameters: {load: {range: [0, 2], default: 1}}\n"
                          "materials: {rubber: {at: all, E: 15, nu: 0.3}}\n";
 
-/// The unit square's lower half on a floor that alone holds it, under a load that is neither in the
-/// middle nor straight down.
+/// The unit square's lower half on a floor that alone holds it, with adhesion or not, under a load
+/// that is neither in the middle nor straight down.
 TEST(Moments, OfAPlaneBodyBalancesItsLoad) {
-  const Scene scene = make_scene(
-      read_case(head + "physics: plane_strain\nmesh: {built_in: one_block, degree: 2}\n"
-                       "loads: {push: {at: top, traction: [0.05*load, -1 - 0.6*x]}}\n"
-                       "contact: {floor: {at: contact, friction: {coulomb: 0.5}, against: {plane: "
-                       "{normal: [0, -1], position: 0}}}}\n"
-                       "outputs:\n  all: {moment: z, about: [0.2*load, 0.1]}\n"
-                       "  rubbing: {moment: z, about: [0.2, 0.1], of: friction, at: floor}\n"
-                       "  pressing: {integral: pressure * (x - 0.2)}\nsmall: yes\n",
-                "plane.yaml"));
-  auto of = named(scene);
-  EXPECT_NEAR(of["all"], 0.7 - 1.3 * 0.2 + 0.05 * (0.5 - 0.1), 1e-9);
-  EXPECT_NEAR(of["rubbing"], -0.05 * 0.1, 1e-10);
-  EXPECT_NEAR(of["pressing"] + of["rubbing"], of["all"], 1e-10);
+  for (const std::string adhesion : {"0", "0.3"}) {
+    const Scene scene = make_scene(read_case(
+        head +
+            "physics: plane_strain\nmesh: {built_in: one_block, degree: 2}\n"
+            "loads: {push: {at: top, traction: [0.05*load, -1 - 0.6*x]}}\n"
+            "contact: {floor: {at: contact, adhesion: " +
+            adhesion +
+            ", friction: {coulomb: 0.5}, against: {plane: {normal: [0, -1], position: 0}}}}\n"
+            "outputs:\n  all: {moment: z, about: [0.2*load, 0.1]}\n"
+            "  rubbing: {moment: z, about: [0.2, 0.1], of: friction, at: floor}\n"
+            "  pressing: {integral: pressure * (x - 0.2)}\nsmall: yes\n",
+        "plane.yaml"));
+    auto of = named(scene);
+    EXPECT_NEAR(of["all"], 0.7 - 1.3 * 0.2 + 0.05 * (0.5 - 0.1), 1e-9);
+    EXPECT_NEAR(of["rubbing"], -0.05 * 0.1, 1e-10);
+    EXPECT_NEAR(of["pressing"] + of["rubbing"], of["all"], 1e-10);
+  }
 }
 
 TEST(Moments, OfTheFirstOfTwoBodies) {
