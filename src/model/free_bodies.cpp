@@ -52,7 +52,6 @@ ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, con
   }
   ReducedAnswer answer;
   int iterations = 0;
-  double to_other = 0;
   const Vector beta = start_of(model, scene, mu);
   const HeldBodies bodies{.solve =
                               [&](const Vector &at) {
@@ -63,7 +62,6 @@ ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, con
                                   throw;
                                 }
                                 iterations += answer.iterations;
-                                to_other = std::max(to_other, answer.to_other);
                                 // As A_N^-1 springs are rigid motions.
                                 const FreeMotions &motions = *answer.motions;
                                 return HeldAnswer{&motions, &answer.lambda,
@@ -77,7 +75,6 @@ ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, con
   const Vector balanced = balance_bodies(beta, bodies);
   method.displace(answer);
   answer.iterations = iterations;
-  answer.to_other = to_other;
   answer.beta = balanced;
   answer.energy += energy_of_springs(model, scene, answer);
   return answer;

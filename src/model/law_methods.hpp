@@ -27,6 +27,9 @@ private:
   LawProblem problem_;
   std::unique_ptr<FrictionSolver> near_; ///< of the answer that near() goes on from
   Starts<Vector> starts_;                ///< FrictionResult::start
+  /// Of bodies that contact alone holds the last problem and its answer, where others are looked
+  /// for: at the one at which forces balance.
+  std::optional<std::pair<Vector, FrictionAnswer>> balanced_;
 };
 
 /// At every node, contact that follows the displacement.

@@ -33,7 +33,10 @@ void NodeLawSolver::solve_at_nodes(const LawAtMu &law, ReducedAnswer &answer) {
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: " + found.reason);
   if (answer.motions) answer.motions->slope = friction.change(law.by_beta);
-  answer.to_other = distance_seen(friction, found, looks_for_others_ && !continues);
+  if (!answer.motions)
+    answer.to_other = distance_seen(friction, found, looks_for_others_);
+  else if (looks_for_others_)
+    balanced_ = {law.q, found};
   answer.energy = 0.5 * (found.x.dot(found.w - law.q) - law.load.squaredNorm());
   answer.iterations += found.iterations;
   answer.lambda = std::move(found.x);
@@ -50,6 +53,13 @@ ReducedAnswer NodeLawSolver::solve(const FullMu &mu, Relaxed relaxed) {
 
 void NodeLawSolver::displace(ReducedAnswer &answer) {
   problem_.displace(answer);
+  if (balanced_)
+    answer.to_other = distance_seen_from(
+        [&](const std::vector<Index> &which) {
+          return problem_.contact().condensed_columns(which);
+        },
+        balanced_->first, problem_.friction().laws(), balanced_->second, answer.motions->held);
+  balanced_.reset();
   starts_.keep(answer.start);
 }
 

@@ -50,7 +50,9 @@ MethodResult solve_active_set(FullBody &body, const Operators &op, const Vector 
   } else {
     FrictionSolver friction(columns, op.laws);
     FrictionAnswer found = friction.answer(q, start, options.by_rule);
-    result.to_other = distance_seen(friction, found, options.looks_for_others);
+    result.to_other = options.held.size() > 0
+                          ? distance_seen_from(columns, q, op.laws, found, options.held)
+                          : distance_seen(friction, found, options.looks_for_others);
     result.start = std::move(found.start);
     take(std::move(found), result);
   }

@@ -150,8 +150,9 @@ MethodResult Condensed::refined(FullBody &body, const ContactTask &task) {
       result.kkt = kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda);
     return result.converged;
   };
-  if (!add(start_of(task), {!task.continues, options_.looks_for_others, {}}))
-    return std::move(passes.front());
+  ActiveSetOptions first{!task.continues, options_.looks_for_others, {}};
+  if (first.looks_for_others && !problem_.free_bodies().empty()) first.held = problem_.held_by(op);
+  if (!add(start_of(task), first)) return std::move(passes.front());
   // H has the round-off of A^-1, which iterative refinement takes out; where its own is as large,
   // the best of the passes counts.
   Vector correction = Vector::Zero(op.g.size());

@@ -78,8 +78,17 @@ double distance_of_answers(const Vector &x, const Vector &other);
 /// contact alone, from rest; from contact at every node with friction, its traction against that of
 /// `found`; and from the contact of `found` (of all nodes where it has none) with all of it stuck,
 /// or slipping one way or the other. Where bounds do not follow the pressure nothing is asked.
-double distance_to_other_answer(FrictionSolver &solver, const FrictionResult &found);
+/// `held`: of bodies that contact alone holds B Z, rows of x by free motions: answers whose forces
+/// along these are others do not count. Empty: there are none.
+double distance_to_other_answer(FrictionSolver &solver, const FrictionResult &found,
+                                const Matrix &held = {});
 /// The same where that is asked for; at least least_distance where others are known of.
-double distance_seen(FrictionSolver &solver, const FrictionAnswer &found, bool looks);
+double distance_seen(FrictionSolver &solver, const FrictionAnswer &found, bool looks,
+                     const Matrix &held = {});
+/// Of bodies that contact alone holds, at the answer `found` to q at which their forces balance
+/// with springs (method/balance.hpp): with springs that are far softer, whose forces no other
+/// answer changes. `columns`: of H with the springs.
+double distance_seen_from(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,
+                          const FrictionAnswer &found, const Matrix &held);
 
 } // namespace rbvi

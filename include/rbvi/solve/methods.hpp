@@ -32,6 +32,7 @@ struct ActiveSetOptions {
   Vector correction{};           ///< is added to q; empty: nothing is
   /// With it, the answer that it is of: the change of its multipliers moves its displacement.
   const MethodResult *refined = nullptr;
+  Matrix held{}; ///< with looks_for_others, of bodies that contact alone holds: distance_seen_from
 };
 /// Active sets on the multipliers of a body that is set to `op`. `start`: FrictionResult::start of
 /// a nearby problem; empty: cold. Collective.
