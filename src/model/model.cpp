@@ -5,6 +5,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/io/fields.hpp"
+#include "rbvi/model/certificate.hpp"
 
 #include <algorithm>
 
@@ -104,6 +105,8 @@ ReducedModel leading(const ReducedModel &model, int n, int r) {
   if (model.contact.g.size() > 0) result.contact.g.reduced = model.contact.g.reduced.topRows(r);
   result.contact.dual_basis = model.contact.dual_basis.leftCols(r);
   result.contact.trace = model.contact.trace.leftCols(n);
+  if (n != model.primal_size())
+    result.certificate = rebased(model.certificate, Matrix::Identity(model.primal_size(), n));
   keep_leading_nitsche(model.primal_size(), n, result);
   if (model.fields.basis.size() > 0) result.fields.basis = model.fields.basis.leftCols(n);
   if (n != model.primal_size()) result.fields.key.clear();
@@ -181,6 +184,7 @@ ReducedModel rebased(const ReducedModel &model, const Matrix &c, int modes) {
   if (model.body.springs.size() > 0) result.body.springs = c.transpose() * model.body.springs;
   result.body.f.reduced = c.transpose() * model.body.f.reduced;
   result.contact.trace = model.contact.trace * c;
+  result.certificate = rebased(model.certificate, c);
   if (model.outputs.basis.size() > 0) result.outputs.basis = model.outputs.basis * c;
   result.fields.basis.resize(0, 0);
   return result;

@@ -7,10 +7,12 @@
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
+#include "rbvi/model/certificate.hpp"
 #include "rbvi/model/column_laws.hpp"
 #include "rbvi/model/free_bodies.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace rbvi {
@@ -279,6 +281,20 @@ void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vec
   if (faces_surfaces) add_gap_error(scene_, contact_, solution.mu, of_interface, lambda, outputs);
 }
 
+void OnlineSolver::add_bound(const ReducedAnswer &solution, const Vector &lambda,
+                             Outputs &outputs) const {
+  const bool asked = std::ranges::any_of(
+      std::array{"bound_u", "bound_lambda", "indicator_u", "indicator_lambda", "energy_norm"},
+      [&](const char *name) { return is_asked(only_, name); });
+  if (model_.certificate.references.empty() || !asked) return;
+  const std::optional<AnswerBound> bound = bound_of(model_, scene_, contact_, solution, lambda);
+  if (!bound) return;
+  const double size = std::max(bound->size, std::numeric_limits<double>::min());
+  (bound->certified ? outputs.bound_u : outputs.indicator_u) = bound->u / size;
+  (bound->certified ? outputs.bound_lambda : outputs.indicator_lambda) = bound->multiplier / size;
+  outputs.energy_norm = std::sqrt(image_count(scene_.mirrors)) * bound->size;
+}
+
 void OnlineSolver::check_forces(const ReducedAnswer &solution) const {
   if (nitsche_)
     return rbvi::check_forces(layer_of(contact_), solution.mu, model_.contact.trace * solution.u);
@@ -308,6 +324,7 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedAnswer &solution) const
   const Vector gap = trace_->gap_left(operators, solution.u);
   trace_->check_outside(operators, gap);
   set_penetration(penetration_at(gap, operators.nodal_gap), result);
+  add_bound(solution, lambda, result);
   const double least = solution.least_pressure * std::max(0.0, lambda.maxCoeff());
   contact_outputs(contact_, solution.mu, operators, lambda, least, result);
   check_finite(result);

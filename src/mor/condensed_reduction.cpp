@@ -125,13 +125,14 @@ StageRow no_pair_row(const Scene &, const ReduceOptions &options, const Reductio
           StageKind::skipped};
 }
 
-std::vector<ReductionStage> law_at_nodes(const Scene &scene, const ReduceOptions &) {
+std::vector<ReductionStage> law_at_nodes(const Scene &scene, const ReduceOptions &options) {
   std::vector<ReductionStage> list = first_stages(scene, separate_jointly);
   list.push_back(condensation_stage());
   list.push_back({pair_stages, no_pair_row});
   add_projection(scene, project_law, list);
   list.push_back({stage::condensation, nullptr, choose_responses});
   list.push_back({stage::projection, nullptr, project_again});
+  add_bounds(options, list);
   list.push_back(self_check_stage());
   return list;
 }

@@ -125,6 +125,7 @@ std::vector<ReductionStage> pair_of_spaces(const Scene &scene, const ReduceOptio
   add_supremizer_stages(options, list);
   list.push_back({sweep_of_supremizers, sweep_of_supremizers_row});
   add_projection(scene, project_bases, list);
+  add_bounds(options, list);
   list.push_back(self_check_stage());
   return list;
 }

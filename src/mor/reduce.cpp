@@ -5,8 +5,10 @@
 #include "rbvi/core/variants.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/model/self_check.hpp"
+#include "rbvi/mor/certificate.hpp"
 #include "rbvi/mor/reduced_balance.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/par/progress.hpp"
 #include "shared_stages.hpp"
 
@@ -182,6 +184,28 @@ void add_projection(const Scene &scene, void (*projects)(Reducing &),
 
 namespace {
 
+StageRow bounds_row(const Scene &scene, const ReduceOptions &, const Reduction *made) {
+  std::string none = no_certificate(scene);
+  if (made == nullptr)
+    return none.empty() ? StageRow{stage::bounds, "norms of the residual at reference parameters"}
+                        : StageRow{stage::bounds, "none: " + none, skipped};
+  const std::vector<CertificateReference> &references = made->model.certificate.references;
+  if (references.empty())
+    return {stage::bounds, "none: " + (none.empty() ? "contact alone holds a body" : none)};
+  double numbers = static_cast<double>(made->model.certificate.lifting_trace.size());
+  for (const CertificateReference &at : references)
+    numbers += static_cast<double>(at.of_basis.size() + at.of_lifting.size() + at.of_loads.size() +
+                                   at.of_contact.size());
+  return {stage::bounds, "norms of the residual at " +
+                             counted(std::ssize(references), "reference parameter") + ", " +
+                             short_number(8e-6 * numbers) + " MB"};
+}
+
+void keep_bounds(Reducing &at) {
+  at.made.model.certificate = make_certificate(at.problem, at.made.bases.pod.basis, at.made.model,
+                                               parameters_of(at.samples));
+}
+
 std::string self_check_text(const Reduction *made) {
   if (made == nullptr) return "queries of the model just made, random and at corners and faces";
   const SelfCheck &check = made->model.made.self_check;
@@ -219,6 +243,19 @@ void check_answers(Reducing &at) {
 }
 
 } // namespace
+
+void add_bounds(const ReduceOptions &options, std::vector<ReductionStage> &list) {
+  if (!options.certify) return;
+  list.push_back({stage::bounds, bounds_row, keep_bounds,
+                  [](const ReductionSize &size) {
+                    const double loads = 3 * (size.modes + size.multipliers) + size.contact;
+                    return StageNeed{.numbers = 2 * size.dofs * loads / size.ranks + size.factor,
+                                     .seconds =
+                                         size.factor *
+                                         (factor_seconds + loads / size.ranks * column_seconds)};
+                  },
+                  "-certify no"});
+}
 
 ReductionStage self_check_stage() {
   return {stage::self_check,

@@ -24,6 +24,8 @@ void add_projection(const Scene &scene, void (*projects)(Reducing &),
 void project_bases(Reducing &at);
 /// With the answers at the training parameters, where a query starts from.
 void project_law(Reducing &at);
+/// What answers with bounds need, where it is wanted; behind the last projection.
+void add_bounds(const ReduceOptions &options, std::vector<ReductionStage> &list);
 ReductionStage self_check_stage();
 
 /// The parameter at which A is the product of supremizers, and of the hybrid cone.

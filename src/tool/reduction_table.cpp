@@ -173,6 +173,12 @@ std::vector<Option> of_collocation(ReduceOptions &o) {
              "collocated: largest number of collocation nodes; 0: no limit")};
 }
 
+std::vector<Option> of_bounds(ReduceOptions &o) {
+  return {flag("certify", o.certify,
+               "every answer has a bound of its error in the energy norm (bound_u), or with "
+               "Coulomb's law an indicator; where A and the load are sums of exact terms")};
+}
+
 std::vector<Option> of_nitsche(NitscheOptions &solver, ReduceOptions &o) {
   return {
       choice("nitsche_steps",
@@ -227,6 +233,7 @@ std::vector<Option> reduction_options(OfflineOptions &options) {
   add("Separation", of_separation(options.reduce), all);
   add("Multipliers", only(use::law, of_law(options.reduce)), all);
   add("Multipliers", only(use::collocated, of_collocation(options.reduce)), all);
+  add("Bounds of errors", only(use::multipliers, of_bounds(options.reduce)), all);
   add("Nitsche's method", only(use::nitsche, of_nitsche(options.hf.nitsche, options.reduce)), all);
   add("Nitsche's method",
       only(use::interpolated, of_interpolated_curve(options.scene, options.reduce)), all);

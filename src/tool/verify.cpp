@@ -16,6 +16,7 @@
 #include "rbvi/model/training_samples.hpp"
 #include "rbvi/mor/reduce.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/study/effectivity.hpp"
 #include "rbvi/study/errors.hpp"
 #include "rbvi/study/output_errors.hpp"
 #include "rbvi/study/separation_errors.hpp"
@@ -296,6 +297,18 @@ std::vector<Sample> boundary_samples(MPI_Comm world, const Groups &groups, Probl
   return std::move(sweep.samples);
 }
 
+/// Bounds over true errors. Throws failure where a bound is below the error. Collective.
+void measure_bounds(Problem &problem, const ReducedModel &model, const std::vector<Sample> &answers,
+                    const std::vector<Sample> &further) {
+  std::vector<Sample> all = answers;
+  all.insert(all.end(), further.begin(), further.end());
+  const Effectivities found = effectivities(problem, model, all);
+  if (rank_of(problem.comm()) == 0) print_effectivities(std::cout, found);
+  if (found.wrong > 0)
+    throw failure(counted(found.wrong, "bound") + " of u below the error: this is a fault of rbvi, "
+                                                  "please report the case");
+}
+
 void tell_of_speed(double query, double solve) {
   const std::string slow = slow_query(query, solve);
   if (!slow.empty()) std::cout << "warning: " << slow << '\n';
@@ -363,6 +376,7 @@ void command_verify(const MeasureOptions &given) {
                                .samples)
           : at_rest(training);
   write_separation(out / "eim.csv", problem, model, points, contact_points(answers), truths.mu);
+  measure_bounds(problem, model, answers, further);
   if (options.stability)
     measure_stability(world, problem, model, points, contact_points(answers), out);
   if (rank_of(world) == 0) {

@@ -1,6 +1,7 @@
 // Contact with friction: what the solver asks for, where it starts, and when it stops.
 #include "friction_problems.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/method/several_answers.hpp"
 
 namespace rbvi::friction_solver_test {
 

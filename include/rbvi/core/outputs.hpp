@@ -60,6 +60,9 @@ struct Outputs {
   std::optional<double> law_error_normal, law_error_tangential, law_error_tau_over_n;
   /// Largest relative errors of the reduced model over its validation set (not of this answer).
   std::optional<double> expected_error_u, expected_error_lambda;
+  /// Of this reduced answer, |u - u_N| and |B^T (lambda - lambda_N)| at most, over |u_N|, all in
+  /// the energy norm; indicators where friction follows the pressure; |u_N| itself.
+  std::optional<double> bound_u, bound_lambda, indicator_u, indicator_lambda, energy_norm;
   std::optional<double> iterations;
   /// Large deformations: load steps that the answer took, where steps from its start failed; else
   /// 0.

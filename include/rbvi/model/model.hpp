@@ -227,6 +227,24 @@ struct OutputModel {
   Matrix basis; ///< the primal basis at cells.nodes: (nodes * components) x n
 };
 
+/// Norms of residuals in A(mu_j)^-1 at one reference parameter mu_j, exact: each block has a column
+/// for a part of the residual, in coordinates that are orthonormal there.
+struct CertificateReference {
+  Vector theta;      ///< of the terms of A at mu_j
+  Matrix of_basis;   ///< rank x (terms * n): A_q times the primal basis, term by term
+  Matrix of_lifting; ///< rank x (terms * m): A_q times the lifting functions
+  Matrix of_loads;   ///< rank x terms of F
+  Matrix of_contact; ///< rank x dofs: a unit force at each of CertificateModel::dofs
+};
+
+/// What bounds of errors are made of (model/certificate.hpp); without references there are none.
+struct CertificateModel {
+  std::vector<CertificateReference> references;
+  std::vector<int> dofs; ///< contact dofs that multipliers push, rising
+  std::vector<int> own;  ///< of each dual dof the function that lifts its gap, -1: none does
+  Matrix lifting_trace;  ///< contact dofs x m: the lifting functions
+};
+
 /// How a model was made, and what was found out about it.
 struct ModelHistory {
   std::map<std::string, std::string> settings; ///< tolerances and options that made it
@@ -247,6 +265,7 @@ struct ReducedModel {
   BodyModel body;
   ContactModel contact;
   OutputModel outputs;
+  CertificateModel certificate;
   ModelFields fields;
   ModelHistory made;
 
@@ -257,7 +276,7 @@ struct ReducedModel {
   bool evaluates_contact() const { return contact.b.size() == 0 && has_multipliers(); }
 };
 
-inline constexpr int model_schema = 23;
+inline constexpr int model_schema = 24;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (fields may all be empty).

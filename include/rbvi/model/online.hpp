@@ -90,6 +90,7 @@ private:
 
   void add_outputs_of_scene(const ReducedAnswer &solution, const Vector &lambda,
                             Outputs &outputs) const;
+  void add_bound(const ReducedAnswer &solution, const Vector &lambda, Outputs &outputs) const;
   ReducedAnswer with_imposed_energy(ReducedAnswer answer) const;
 
   const ReducedModel &model_;

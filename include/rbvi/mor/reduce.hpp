@@ -67,6 +67,7 @@ struct ReduceOptions {
   Enrichment enrichment = Enrichment::offline;
   SupremizerProduct product = SupremizerProduct::v;
   OnlineMethod online_method = OnlineMethod::exact; ///< of the queries of the model
+  bool certify = false; ///< the model keeps what bounds of its errors are made of
   Mu reference; ///< free parameters of the a of energy and of the hybrid cone; empty: box_centre
 };
 
@@ -141,7 +142,8 @@ namespace stage {
 inline constexpr StageName interpolation("interpolation"), pod("POD"), condensation("condensation"),
     cone("cone"), multipliers("multipliers"), riesz("Riesz representers"),
     infsup_tolerance("inf-sup tolerance"), pga("PGA"), contact_curve("contact curve"),
-    collocation("collocation nodes"), projection("projection"), self_check("self-check");
+    collocation("collocation nodes"), projection("projection"), bounds("bounds of errors"),
+    self_check("self-check");
 } // namespace stage
 
 /// One row per stage. `made` null: the plan, in which what hangs on the separation of the operators

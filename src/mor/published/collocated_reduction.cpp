@@ -162,6 +162,7 @@ std::vector<ReductionStage> law_on_functions(const Scene &scene, const ReduceOpt
   add_supremizer_stages(options, list);
   add_projection(scene, project_law, list);
   if (has_friction(scene)) list.push_back({stage::collocation, collocation_row, choose_nodes});
+  add_bounds(options, list);
   list.push_back(self_check_stage());
   return list;
 }

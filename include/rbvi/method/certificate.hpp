@@ -1,0 +1,51 @@
+// A bound of the error of any answer u_N, l_N to the problem of contact
+//
+//   A u + B^T l = f,   B_n u <= g_n,   l_n >= 0,   complementary,   and by Tresca's law |l_t| <= k
+//
+// from what the answer itself leaves: no constant of stability, no part of the true answer. |.| of
+// a displacement is its norm in A, of a residual its norm in A^-1. With r = f - A u_N - B^T l_N and
+// s = B_n u_N - g_n, a lifting z of s, B_n z >= s, makes v = u_N - z admissible, and
+//
+//   slack = l_n . (B_n z - s) + sum of (k |v_t| - l_t . v_t),   v_t = B_t v - g_t,
+//   |u - u_N| <= |r - A z| / 2 + Rad,   |u - v|, |B^T (l - l_N)| <= |r + A z| / 2 + Rad,
+//   Rad^2 = |r + A z|^2 / 4 + slack,    J(v) - gap <= J(u) <= J(v),   gap = |r + A z|^2 / 2 + slack
+//
+// where l_N is one that the law allows and J is the energy with k |v_t|. cases/CERTIFICATES.md
+// proves it.
+#pragma once
+
+#include "rbvi/core/dense.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace rbvi {
+
+struct ErrorBound {
+  double u;          ///< of |u - u_N|
+  double multiplier; ///< of |u - v| and of |B^T (l - l_N)|
+  double gap;        ///< of J(v) - J(u)
+};
+
+/// `minus`: |r - A z|, `plus`: |r + A z|, `slack` >= 0.
+ErrorBound error_bound(double minus, double plus, double slack);
+
+/// Bound of the norm of a residual in A^-1 from its norms in A_j^-1, J of them, where
+/// A = sum of theta_q A^q and A_j = sum of references(q, j) A^q: with any c >= 0 for which
+/// A = sum of c_j A_j it is (sum of c_j / norms_j^2)^-1/2, and of these the least is taken.
+/// Infinite where A is no such sum.
+double norm_over_references(const Matrix &references, const Vector &theta, const Vector &norms);
+
+/// z as a combination of lifting functions, and B_n z - s >= 0 at every row.
+struct Lifting {
+  Vector weights, left;
+};
+
+/// `b`: B_n of the lifting functions, rows x m; `own`: of each row the function that lifts it, -1:
+/// none does; `s`, `multiplier`: rows. Rows whose multiplier stays positive under s get B_n z = s,
+/// others as much as they need. What is left within `roundoff` of zero is zero. Nothing where some
+/// row cannot be lifted.
+std::optional<Lifting> lift(const Matrix &b, const std::vector<int> &own, const Vector &s,
+                            const Vector &multiplier, double roundoff);
+
+} // namespace rbvi

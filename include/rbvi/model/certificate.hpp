@@ -1,0 +1,34 @@
+// The bound of method/certificate.hpp of a reduced answer, from what the model keeps for it. B and
+// g are those of mu on the interfaces, at every node, and l_N is made one that the law allows
+// first, so that no approximation of the model enters. A is a sum of exact terms; the norm of a
+// residual follows from those at a few reference parameters (norm_over_references).
+#pragma once
+
+#include "rbvi/contact/contact.hpp"
+#include "rbvi/model/answer.hpp"
+#include "rbvi/model/model.hpp"
+
+#include <optional>
+
+namespace rbvi {
+
+/// In the norm of A(mu), of the part of the body that is modelled.
+struct AnswerBound {
+  double u;          ///< of |u - u_N|
+  double multiplier; ///< of |B^T (l - l_N)|, in A^-1
+  double size;       ///< |u_N|
+  /// The law is one for which it is a bound: none of friction, or Tresca's with the same threshold
+  /// everywhere. Else it is that of the problem whose bound of friction is the answer's own.
+  bool certified;
+};
+
+/// `lambda`: of the answer, at the dual dofs. Nothing where the model keeps nothing for it, or
+/// where multipliers push or gaps are open at nodes of which it knows nothing.
+std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scene,
+                                    const Contact &contact, const ReducedAnswer &answer,
+                                    const Vector &lambda);
+
+/// The same on the functions V C of the model's basis V, C n x k.
+CertificateModel rebased(CertificateModel certificate, const Matrix &c);
+
+} // namespace rbvi

@@ -1,0 +1,28 @@
+// Bounds of errors over true errors, in the energy norm at each parameter.
+#pragma once
+
+#include "rbvi/fem/problem.hpp"
+#include "rbvi/model/model.hpp"
+#include "rbvi/sweep/sweep.hpp"
+
+#include <iosfwd>
+
+namespace rbvi {
+
+struct Effectivities {
+  std::vector<double> values;     ///< bound / |u - u_N|, of bounds
+  std::vector<double> indicators; ///< likewise of indicators
+  int exact = 0; ///< answers whose error is that of the high-fidelity solver, 1e-8 of |u|, or less
+  int without = 0; ///< answers that have no bound
+  int wrong = 0;   ///< bounds below the error, by more than that of the high-fidelity solver
+};
+
+/// Of the model's answers at samples with their fields, which must be those of the model. Nothing
+/// where the model keeps nothing for bounds. Collective on the problem's communicator.
+Effectivities effectivities(Problem &problem, const ReducedModel &model,
+                            const std::vector<Sample> &samples);
+
+/// "Bounds of u: 1.01 to 1.43 times the error, median 1.2, over 12 answers".
+void print_effectivities(std::ostream &out, const Effectivities &found);
+
+} // namespace rbvi

@@ -1,0 +1,143 @@
+#include "rbvi/model/certificate.hpp"
+
+#include "rbvi/method/certificate.hpp"
+#include "rbvi/model/affine_coefficients.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace rbvi {
+
+namespace {
+
+/// theta_1 x, theta_2 x, ...: what a block of terms is multiplied with.
+Vector by_terms(const Vector &theta, const Vector &x) {
+  return (x * theta.transpose()).reshaped();
+}
+
+/// What the condition leaves at the answer, and what of it is round-off.
+struct Gaps {
+  ContactOperators at_mu;
+  Vector left;     ///< B u_N - g
+  double roundoff; ///< of an entry
+};
+
+Gaps gaps_of(const ReducedModel &model, const Contact &contact, const ReducedAnswer &answer) {
+  constexpr double units = 64 * std::numeric_limits<double>::epsilon();
+  Gaps gaps;
+  if (model.evaluates_contact())
+    gaps.at_mu = answer.contact;
+  else
+    assemble(contact, answer.mu, {}, gaps.at_mu);
+  const Vector u = model.contact.trace * answer.u;
+  gaps.left = gaps.at_mu.b * u - gaps.at_mu.g;
+  double largest = gaps.at_mu.g.cwiseAbs().maxCoeff();
+  for (Index row = 0; row < gaps.at_mu.b.rows(); ++row)
+    for (SparseMatrix::InnerIterator entry(gaps.at_mu.b, row); entry; ++entry)
+      largest = std::max(largest, std::abs(entry.value() * u[entry.col()]));
+  gaps.roundoff = units * largest;
+  return gaps;
+}
+
+/// Sum of k |v_t| - x_t . v_t over the nodes with friction, `slip` v_t at all rows.
+double friction_slack(const NodeLaws &laws, const Vector &x, const Vector &slip) {
+  double sum = 0;
+  for (Index node = 0; node < laws.nodes(); ++node) {
+    if (!laws.has_tangent(node)) continue;
+    const auto of = [&](const Vector &rows) {
+      return rows.segment(laws.tangent[node], laws.tangents);
+    };
+    const double k = laws.bound[node].value(x[laws.normal[node]]);
+    sum += std::max(0.0, k * of(slip).norm() - of(x).dot(of(slip)));
+  }
+  return sum;
+}
+
+/// Norms of r - A z and of r + A z in A(mu)^-1, `u` and `z` coefficients of the primal basis and of
+/// the lifting functions, `pushed` B^T l at CertificateModel::dofs.
+struct Norms {
+  double minus, plus;
+};
+Norms residual_norms(const CertificateModel &certificate, const Vector &theta_a,
+                     const Vector &theta_f, const Vector &pushed, const Vector &u,
+                     const Vector &z) {
+  const Index count = std::ssize(certificate.references);
+  Matrix references(theta_a.size(), count);
+  Vector minus(count), plus(count);
+  const Vector of_u = by_terms(theta_a, u), of_z = by_terms(theta_a, z);
+  for (Index j = 0; j < count; ++j) {
+    const CertificateReference &at = certificate.references[j];
+    references.col(j) = at.theta;
+    Vector residual = -(at.of_basis * of_u) - at.of_contact * pushed;
+    if (theta_f.size() > 0) residual += at.of_loads * theta_f;
+    const Vector lifted = at.of_lifting * of_z;
+    minus[j] = (residual - lifted).norm();
+    plus[j] = (residual + lifted).norm();
+  }
+  return {norm_over_references(references, theta_a, minus),
+          norm_over_references(references, theta_a, plus)};
+}
+
+/// Whether a bound of friction is known before the answer is.
+bool is_given(const FrictionBound &bound) {
+  return !(bound.acts() && bound.follows_pressure());
+}
+
+} // namespace
+
+std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scene,
+                                    const Contact &contact, const ReducedAnswer &answer,
+                                    const Vector &lambda) {
+  const CertificateModel &certificate = model.certificate;
+  if (certificate.references.empty()) return std::nullopt;
+  const NodeLaws laws = laws_at(contact, answer.mu);
+  const Vector x = admissible(laws, lambda);
+  const Gaps gaps = gaps_of(model, contact, answer);
+  const SparseMatrix &b = gaps.at_mu.b;
+
+  Vector pushed = b.transpose() * x;
+  const Vector known = pushed(certificate.dofs);
+  pushed(certificate.dofs).setZero();
+  if ((pushed.array() != 0).any()) return std::nullopt;
+
+  const Matrix of_lifting = b * certificate.lifting_trace;
+  std::vector<int> own;
+  for (const Index row : laws.normal)
+    own.push_back(certificate.own[row]);
+  const std::optional<Lifting> lifting =
+      lift(of_lifting(laws.normal, Eigen::all), own, gaps.left(laws.normal), x(laws.normal),
+           gaps.roundoff);
+  if (!lifting) return std::nullopt;
+
+  const Vector theta_a = affine_coefficients(model.body.a, scene.a, scene, answer.mu);
+  Vector theta_f;
+  if (model.body.f.size() > 0)
+    theta_f = affine_coefficients(model.body.f, scene.f, scene, answer.mu);
+  const Norms norms =
+      residual_norms(certificate, theta_a, theta_f, known, answer.u, lifting->weights);
+  double slack = x(laws.normal).dot(lifting->left);
+  if (laws.has_tangents())
+    slack += friction_slack(laws, x, gaps.left - of_lifting * lifting->weights);
+  const ErrorBound bound = error_bound(norms.minus, norms.plus, slack);
+
+  Matrix a;
+  stiffness_of(model, theta_a, a);
+  const double size = std::sqrt(answer.u.dot(a.selfadjointView<Eigen::Lower>() * answer.u));
+  bool certified = true;
+  for (Index node = 0; node < laws.nodes(); ++node)
+    certified = certified && (!laws.has_tangent(node) || is_given(laws.bound[node]));
+  return AnswerBound{bound.u, bound.multiplier, size, certified};
+}
+
+CertificateModel rebased(CertificateModel certificate, const Matrix &c) {
+  const Index n = c.rows(), k = c.cols();
+  for (CertificateReference &reference : certificate.references) {
+    Matrix turned(reference.of_basis.rows(), reference.theta.size() * k);
+    for (Index q = 0; q < reference.theta.size(); ++q)
+      turned.middleCols(q * k, k) = reference.of_basis.middleCols(q * n, n) * c;
+    reference.of_basis = std::move(turned);
+  }
+  return certificate;
+}
+
+} // namespace rbvi

@@ -1,0 +1,226 @@
+#include "rbvi/mor/certificate.hpp"
+
+#include "condensed_loads.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/element/imposed.hpp"
+#include "rbvi/mor/reduce.hpp"
+#include "rbvi/par/collective.hpp"
+#include "rbvi/par/columns.hpp"
+#include "rbvi/solve/linear.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace rbvi {
+
+namespace {
+
+constexpr std::size_t most_axes = 2; ///< parameters of A beside its common coefficient
+constexpr double dependent = 1e-13;  ///< what is left of a representer among the others
+
+bool has_mapped_terms(const Sum &sum) {
+  return std::ranges::any_of(sum, [](const Term &term) { return !term.theta; });
+}
+
+/// The ends and the middle, in its coordinate, of each parameter that A depends on beside its
+/// common coefficient; the others in the middle. The middle of all comes first.
+std::vector<Mu> reference_parameters(const Scene &scene) {
+  std::vector<Mu> points{box_centre(scene.parameters)};
+  for (const int parameter : parameters_beside_common(scene.a, scene.parameters)) {
+    const std::vector<int> &free = scene.parameters.free;
+    const auto place = std::ranges::find(free, parameter) - free.begin();
+    const Parameter &of = scene.parameters.all[parameter];
+    const std::vector<Mu> before = points;
+    for (const double value : {of.lower, of.upper})
+      for (Mu mu : before) {
+        mu[place] = value;
+        points.push_back(std::move(mu));
+      }
+  }
+  return points;
+}
+
+/// The functions that lift gaps: one for each normal multiplier that the model can have.
+struct LiftedRows {
+  std::vector<int> own; ///< CertificateModel::own
+  Matrix forces;        ///< dual dofs x m: the multiplier of each
+};
+
+LiftedRows lifted_rows(const Contact &contact, const ReducedModel &model) {
+  const Matrix &dual = model.contact.dual_basis;
+  LiftedRows rows{std::vector<int>(dual.rows(), -1), Matrix::Zero(dual.rows(), dual.rows())};
+  int count = 0;
+  std::vector<int> of_column(dual.cols(), -1); // a node of a law and its mirror image share one
+  for (Index row = 0; row < dual.rows(); ++row) {
+    if (!dual_row(contact, row).normal || dual.row(row).isZero(0)) continue;
+    Index column = 0;
+    dual.row(row).cwiseAbs().maxCoeff(&column);
+    const bool shared = model.contact.law && of_column[column] >= 0;
+    rows.own[row] = shared ? of_column[column] : count++;
+    of_column[column] = rows.own[row];
+    rows.forces(row, rows.own[row]) = 1;
+  }
+  rows.forces.conservativeResize(dual.rows(), count);
+  return rows;
+}
+
+/// The contact dofs that multipliers of the model push at one of these parameters, rising.
+std::vector<int> pushed_dofs(Problem &problem, const ReducedModel &model,
+                             const std::vector<Mu> &set) {
+  std::set<int> dofs;
+  if (model.contact.law)
+    dofs.insert(model.contact.law->condensed.dofs.begin(), model.contact.law->condensed.dofs.end());
+  Operators op;
+  for (const Mu &mu : set) {
+    problem.assemble_contact(mu, op);
+    for (Index row = 0; row < op.b.rows(); ++row)
+      for (SparseMatrix::InnerIterator entry(op.b, row); entry; ++entry)
+        if (entry.value() != 0 && !model.contact.dual_basis.row(row).isZero(0))
+          dofs.insert(static_cast<int>(entry.col()));
+  }
+  return {dofs.begin(), dofs.end()};
+}
+
+Handle<Mat> solved(KSP ksp, Mat loads) {
+  Handle<Mat> result;
+  RBVI_CALL(MatDuplicate(loads, MAT_DO_NOT_COPY_VALUES, result.put()));
+  RBVI_CALL(KSPMatSolve(ksp, loads, result.get()));
+  return result;
+}
+
+Handle<Mat> product(Mat a, Mat columns) {
+  Handle<Mat> result;
+  RBVI_CALL(MatMatMult(a, columns, MAT_INITIAL_MATRIX, PETSC_DEFAULT, result.put()));
+  return result;
+}
+
+/// The terms of F as columns. Collective.
+Handle<Mat> loads_of(const Problem &problem, Mat like) {
+  const std::vector<Handle<Vec>> &terms = problem.f_terms().exact;
+  Matrix columns(std::ssize(problem.dofs().natural_owned), std::ssize(terms));
+  for (Index q = 0; q < columns.cols(); ++q)
+    columns.col(q) = local_values(terms[q].get());
+  return dense_like(like, columns);
+}
+
+/// X^T Y of columns over the ranks.
+Matrix products(Mat x, Mat y) {
+  Matrix result = BorrowedRows(x).rows().transpose() * BorrowedRows(y).rows();
+  over_ranks(comm_of(x), MPI_SUM, result);
+  return result;
+}
+
+/// The residual's parts at the reference that the problem is assembled at.
+class Representers {
+public:
+  /// `x`: columns that are spanned first, not dependent. Collective.
+  Representers(const Problem &problem, const Operators &op, Mat x)
+      : problem_(problem), a_(op.a), ksp_(make_direct_solver(problem.comm(), "hf_")),
+        basis_{make_columns(make_vector(problem.dofs()).get(), 1, op.a)} {
+    set_operator(ksp_.get(), a_);
+    Vec first = nullptr;
+    RBVI_CALL(BVGetColumn(basis_.columns.get(), 0, &first));
+    RBVI_CALL(MatGetColumnVector(x, first, 0));
+    RBVI_CALL(BVRestoreColumn(basis_.columns.get(), 0, &first));
+    RBVI_CALL(BVOrthonormalizeColumn(basis_.columns.get(), 0, PETSC_FALSE, nullptr, nullptr));
+    span_terms(x);
+  }
+  /// Spans A^-1 A_q X of all terms, in which the A^-1 A X = X of all of them together is one.
+  void span_terms(Mat x) {
+    append_orthonormalised(basis_, x, dependent);
+    const std::vector<Handle<Mat>> &terms = problem_.a_terms().exact;
+    for (std::size_t q = 1; q < terms.size(); ++q)
+      span(product(terms[q].get(), x).get());
+  }
+  void span(Mat loads) {
+    append_orthonormalised(basis_, solved(ksp_.get(), loads).get(), dependent);
+  }
+  /// rank x (terms * columns of x): A_q X term by term.
+  Matrix of_terms(Mat x) const {
+    const BorrowedColumns columns(basis_.columns.get());
+    const std::vector<Handle<Mat>> &terms = problem_.a_terms().exact;
+    Matrix result;
+    for (std::size_t q = 0; q < terms.size(); ++q) {
+      const Matrix part = products(columns.get(), product(terms[q].get(), x).get());
+      result.conservativeResize(part.rows(), part.cols() * std::ssize(terms));
+      result.middleCols(static_cast<Index>(q) * part.cols(), part.cols()) = part;
+    }
+    return result;
+  }
+  Matrix of_loads(Mat loads) const {
+    return products(BorrowedColumns(basis_.columns.get()).get(), loads);
+  }
+  Matrix at_contact() const {
+    return restrict_to(problem_.trace(), BorrowedColumns(basis_.columns.get()).get());
+  }
+
+private:
+  const Problem &problem_;
+  Mat a_;
+  Handle<KSP> ksp_;
+  LinearBasis basis_; ///< orthonormal in A
+};
+
+CertificateReference reference_at(Problem &problem, const Mu &mu, Mat basis, Mat lifting,
+                                  const std::vector<int> &dofs) {
+  const Operators &op = problem.assemble(mu);
+  const Scene &scene = problem.scene();
+  const std::vector<double> theta = exact_coefficients(
+      scene.a, problem.a_terms().split, scene.parameters, expand(scene.parameters, mu));
+  Representers representers(problem, op, basis);
+  representers.span_terms(lifting);
+  representers.span(extension(problem.trace(), unit_loads(problem.trace().size, dofs), op.a).get());
+  const Handle<Mat> loads = loads_of(problem, op.a);
+  const bool has_loads = !problem.f_terms().exact.empty();
+  if (has_loads) representers.span(loads.get());
+  CertificateReference reference;
+  reference.theta = Eigen::Map<const Vector>(theta.data(), std::ssize(theta));
+  reference.of_basis = representers.of_terms(basis);
+  reference.of_lifting = representers.of_terms(lifting);
+  reference.of_loads =
+      has_loads ? representers.of_loads(loads.get()) : Matrix(reference.of_basis.rows(), 0);
+  reference.of_contact = representers.at_contact()(dofs, Eigen::all).transpose();
+  return reference;
+}
+
+/// A^-1 B^T of these multipliers at mu. Collective.
+Handle<Mat> lifting_functions(Problem &problem, const Mu &mu, const Matrix &forces) {
+  const Operators &op = problem.assemble(mu);
+  const Handle<KSP> ksp = make_direct_solver(problem.comm(), "hf_");
+  set_operator(ksp.get(), op.a);
+  return solved(ksp.get(), extension(problem.trace(), op.b.transpose() * forces, op.a).get());
+}
+
+} // namespace
+
+std::string no_certificate(const Scene &of) {
+  const Scene scene = with_imposed_loads(of);
+  if (!has_multipliers(scene)) return "Nitsche's method has no multipliers";
+  if (follows_state(scene)) return "contact follows the displacement";
+  if (has_mapped_terms(scene.a)) return "A is not a sum of exact terms";
+  if (has_mapped_terms(scene.f)) return "the load is not a sum of exact terms";
+  if (parameters_beside_common(scene.a, scene.parameters).size() > most_axes)
+    return "A depends on more than " + std::to_string(most_axes) + " parameters";
+  return "";
+}
+
+CertificateModel make_certificate(Problem &problem, const LinearBasis &basis,
+                                  const ReducedModel &model, const std::vector<Mu> &training) {
+  CertificateModel certificate;
+  if (!no_certificate(problem.scene()).empty() || !problem.free_bodies().empty() ||
+      !model.contact.trace_dofs.empty())
+    return certificate;
+  LiftedRows rows = lifted_rows(problem.contact(), model);
+  certificate.own = std::move(rows.own);
+  certificate.dofs = pushed_dofs(problem, model, training);
+  const std::vector<Mu> references = reference_parameters(problem.scene());
+  const Handle<Mat> lifting = lifting_functions(problem, references.front(), rows.forces);
+  certificate.lifting_trace = restrict_to(problem.trace(), lifting.get());
+  const BorrowedColumns columns(basis.columns.get());
+  for (const Mu &mu : references)
+    certificate.references.push_back(
+        reference_at(problem, mu, columns.get(), lifting.get(), certificate.dofs));
+  return certificate;
+}
+
+} // namespace rbvi

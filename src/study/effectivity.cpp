@@ -1,0 +1,79 @@
+#include "rbvi/study/effectivity.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/model/online.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+namespace rbvi {
+
+namespace {
+
+/// |u| in the norm of A. Collective.
+double energy_norm(Mat a, Vec u) {
+  Handle<Vec> product;
+  PetscScalar square = 0;
+  RBVI_CALL(VecDuplicate(u, product.put()));
+  RBVI_CALL(MatMult(a, u, product.get()));
+  RBVI_CALL(VecDot(u, product.get(), &square));
+  return std::sqrt(std::max(0.0, square));
+}
+
+std::string told(const char *what, std::vector<double> values) {
+  std::ranges::sort(values);
+  return std::string(what) + ": " + short_number(values.front()) + " to " +
+         short_number(values.back()) + " times the error in the energy norm, median " +
+         short_number(values[values.size() / 2]) + ", over " +
+         counted(std::ssize(values), "answer");
+}
+
+} // namespace
+
+Effectivities effectivities(Problem &problem, const ReducedModel &model,
+                            const std::vector<Sample> &samples) {
+  constexpr double of_solver = 1e-8;
+  Effectivities found;
+  if (model.certificate.references.empty()) return found;
+  OnlineSolver solver(model, {.only = {"bound_u", "indicator_u", "energy_norm"}});
+  for (const Sample &sample : samples) {
+    Outputs outputs;
+    Vector error = sample.u;
+    try {
+      const ReducedAnswer answer = solver.solve(sample.mu, true);
+      outputs = solver.outputs(sample.mu, answer);
+      error -= solver.field(answer);
+    } catch (const Error &) { // told where errors are
+      continue;
+    }
+    const std::optional<double> bound = outputs.bound_u ? outputs.bound_u : outputs.indicator_u;
+    if (!bound) {
+      ++found.without;
+      continue;
+    }
+    const Operators &op = problem.assemble(sample.mu);
+    const double size = energy_norm(op.a, from_natural(problem.dofs(), sample.u).get()),
+                 distance = energy_norm(op.a, from_natural(problem.dofs(), error).get()),
+                 images = std::sqrt(image_count(problem.scene().mirrors));
+    if (distance <= of_solver * size) {
+      ++found.exact;
+      continue;
+    }
+    const double most = *bound * *outputs.energy_norm / images;
+    (outputs.bound_u ? found.values : found.indicators).push_back(most / distance);
+    if (outputs.bound_u && !(most + of_solver * size >= distance)) ++found.wrong;
+  }
+  return found;
+}
+
+void print_effectivities(std::ostream &out, const Effectivities &found) {
+  if (!found.values.empty()) out << told("Bounds of u", found.values) << '\n';
+  if (!found.indicators.empty()) out << told("Indicators of u", found.indicators) << '\n';
+  if (found.exact > 0)
+    out << counted(found.exact, "answer") << " with a bound as exact as the high-fidelity ones\n";
+  if (found.without > 0) out << counted(found.without, "answer") << " without a bound\n";
+}
+
+} // namespace rbvi

@@ -1,0 +1,79 @@
+// Bounds of reduced answers against true errors: of good models, and of models that are wrong on
+// purpose.
+#include "disk.hpp"
+#include "rbvi/model/online.hpp"
+#include "rbvi/mor/certificate.hpp"
+#include "rbvi/study/effectivity.hpp"
+#include "reduced.hpp"
+#include "tests/catalogue.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace rbvi::certificate_study_test {
+namespace {
+
+using namespace testing_reduced;
+
+ReduceOptions certified(MultiplierReduction reduction) {
+  ReduceOptions options = with(reduction);
+  options.certify = true;
+  return options;
+}
+
+struct Case {
+  std::string name, free;
+  SceneOptions options;
+  MultiplierReduction reduction = MultiplierReduction::condensed;
+  bool bound = true; ///< else an indicator
+};
+
+const SceneOptions without{{"friction", "none"}};
+const std::vector<Case> cases{{"frictionless", "radius,indentation", without},
+                              {"stiffness", "radius,core_stiffness", without},
+                              {"poisson", "radius,poisson_ratio", without},
+                              {"tresca", "radius,indentation", {{"friction", "tresca"}}},
+                              {"coulomb",
+                               "radius,indentation",
+                               {{"friction", "coulomb"}},
+                               MultiplierReduction::condensed,
+                               false},
+                              {"cone", "radius,indentation", without, MultiplierReduction::cone}};
+
+void PrintTo(const Case &c, std::ostream *out) {
+  *out << c.name;
+}
+
+class OfDisk : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Cases, OfDisk, testing::ValuesIn(cases),
+                         [](const auto &info) { return info.param.name; });
+
+void expect_bounds(const Effectivities &found, bool bound, double median) {
+  EXPECT_EQ(found.wrong, 0);
+  EXPECT_EQ(found.without, 0);
+  std::vector<double> values = bound ? found.values : found.indicators;
+  ASSERT_FALSE(values.empty());
+  EXPECT_TRUE((bound ? found.indicators : found.values).empty());
+  std::ranges::sort(values);
+  if (bound) EXPECT_GE(values.front(), 1 - 1e-4) << "the error is known to 1e-8 of u";
+  EXPECT_LE(values[values.size() / 2], median);
+}
+
+} // namespace
+
+TEST_P(OfDisk, BoundsWhatTheModelLeaves) {
+  const Case &c = GetParam();
+  Reduced r(disk(c.free, c.options), "grid:2,2");
+  r.reduce(certified(c.reduction));
+  ASSERT_FALSE(r.model.certificate.references.empty());
+  const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:8:3"));
+  const Effectivities good = effectivities(r.problem, r.model, unseen);
+  expect_bounds(good, c.bound, 20);
+  // Half of the functions of the displacement alone: the error is large, and told.
+  const ReducedModel poor =
+      leading(r.model, std::max(3, r.model.body.modes / 2), r.model.contact.generators);
+  expect_bounds(effectivities(r.problem, poor, unseen), c.bound, 20);
+}
+
+} // namespace rbvi::certificate_study_test
