@@ -36,71 +36,93 @@ double norm_over_references(const Matrix &references, const Vector &theta, const
 
 namespace {
 
-/// What B_n z is wanted to be at the rows of some lifting functions, one for each.
-struct Wanted {
-  std::vector<Index> rows;
-  std::vector<Index> functions;
-
-  void add(Index row, int function) {
-    rows.push_back(row);
-    functions.push_back(function);
-  }
-  bool lifts(int function) const {
-    return std::ranges::find(functions, Index{function}) != functions.end();
-  }
+/// Rows, and the lifting function of each.
+struct Pairs {
+  std::vector<Index> rows, functions;
 };
 
-/// Weights with B_n z = s at these rows.
-Vector weights_of(const Matrix &b, const Wanted &wanted, const Vector &s) {
-  Vector weights = Vector::Zero(b.cols());
-  if (wanted.rows.empty()) return weights;
-  const Matrix square = b(wanted.rows, wanted.functions);
-  const Vector target = s(wanted.rows);
-  Vector some = lu_solve(square, target);
-  some += lu_solve(square, target - square * some);
-  weights(wanted.functions) = some;
-  return weights;
-}
+/// What B_n z is wanted to be: s at these rows.
+class Wanted {
+public:
+  explicit Wanted(const ColumnSource &columns, Index rows) : columns_(columns), b_(rows, 0) {}
+  void add(const Pairs &pairs) {
+    const Matrix columns = columns_(pairs.functions);
+    for (Index k = 0; k < columns.cols(); ++k)
+      add(pairs.rows[k], pairs.functions[k], columns.col(k));
+  }
+  void add(Index row, Index function, const Vector &column) {
+    pairs_.rows.push_back(row);
+    pairs_.functions.push_back(function);
+    b_.conservativeResize(b_.rows(), b_.cols() + 1);
+    b_.rightCols(1) = column;
+  }
+  /// Rows that `wants` holds for, one of each function that is not there yet.
+  template <class Wants> Pairs more(const std::vector<int> &own, const Wants &wants) const {
+    Pairs result;
+    for (std::size_t row = 0; row < own.size(); ++row) {
+      const Index function = own[row];
+      if (function < 0 || !wants(static_cast<Index>(row))) continue;
+      const auto is_in = [&](const Pairs &pairs) {
+        return std::ranges::find(pairs.functions, function) != pairs.functions.end();
+      };
+      if (is_in(pairs_) || is_in(result)) continue;
+      result.rows.push_back(static_cast<Index>(row));
+      result.functions.push_back(function);
+    }
+    return result;
+  }
+  Lifting lifting(const Vector &s) const {
+    Lifting result{pairs_.functions, Vector(b_.cols()), -s};
+    if (b_.cols() == 0) return result;
+    const Matrix square = b_(pairs_.rows, Eigen::all);
+    result.weights = lu_solve(square, s(pairs_.rows));
+    result.weights += lu_solve(square, s(pairs_.rows) - square * result.weights);
+    result.left += b_ * result.weights;
+    return result;
+  }
+
+private:
+  const ColumnSource &columns_;
+  Pairs pairs_;
+  Matrix b_; ///< B_n of these functions
+};
 
 /// Adds a multiple of the sum of all functions that leaves no row below zero.
-bool raise(const Matrix &b, double roundoff, Lifting &lifting) {
-  const Vector sum = b.rowwise().sum();
-  double amount = 0;
+bool raise(const ColumnSource &columns, Index count, double roundoff, Lifting &lifting) {
+  if (lifting.left.minCoeff() >= -roundoff) return true;
+  std::vector<Index> all(count);
+  std::iota(all.begin(), all.end(), 0);
+  const Vector sum = columns(all).rowwise().sum();
   for (Index row = 0; row < sum.size(); ++row) {
     if (lifting.left[row] >= -roundoff) continue;
     if (!(sum[row] > 0)) return false;
-    amount = std::max(amount, -lifting.left[row] / sum[row]);
+    lifting.raised = std::max(lifting.raised, -lifting.left[row] / sum[row]);
   }
-  if (amount == 0) return true;
-  lifting.weights.array() += amount;
-  lifting.left += amount * sum;
+  lifting.left += lifting.raised * sum;
   return lifting.left.minCoeff() >= -roundoff;
 }
 
 } // namespace
 
-std::optional<Lifting> lift(const Matrix &b, const std::vector<int> &own, const Vector &s,
-                            const Vector &multiplier, double roundoff) {
+std::optional<Lifting> lift(const ColumnSource &columns, Index count, const std::vector<int> &own,
+                            const Vector &s, const Vector &multiplier, double roundoff) {
   constexpr int most_rounds = 10;
-  Wanted wanted;
-  for (Index row = 0; row < s.size(); ++row) {
-    const int function = own[row];
-    if (function < 0 || wanted.lifts(function)) continue;
-    const double k = 1 / b(row, function);
-    if (s[row] > 0 || (multiplier[row] > 0 && multiplier[row] + k * s[row] > 0))
-      wanted.add(row, function);
+  Wanted wanted(columns, s.size());
+  const Pairs near = wanted.more(own, [&](Index row) { return s[row] > 0 || multiplier[row] > 0; });
+  const Matrix of_near = columns(near.functions);
+  for (Index k = 0; k < of_near.cols(); ++k)
+    if (const Index row = near.rows[k];
+        s[row] > 0 || multiplier[row] + s[row] / of_near(row, k) > 0)
+      wanted.add(row, near.functions[k], of_near.col(k));
+  Lifting lifting = wanted.lifting(s);
+  for (int round = 0; round < most_rounds; ++round) {
+    const Pairs below = wanted.more(own, [&](Index row) { return lifting.left[row] < -roundoff; });
+    if (below.rows.empty()) break;
+    wanted.add(below);
+    lifting = wanted.lifting(s);
   }
-  Lifting lifting;
-  for (int round = 0;; ++round) {
-    lifting.weights = weights_of(b, wanted, s);
-    lifting.left = b * lifting.weights - s;
-    const std::size_t before = wanted.rows.size();
-    for (Index row = 0; row < s.size() && round < most_rounds; ++row)
-      if (lifting.left[row] < -roundoff && own[row] >= 0 && !wanted.lifts(own[row]))
-        wanted.add(row, own[row]);
-    if (wanted.rows.size() == before) break;
-  }
-  if (!lifting.weights.allFinite() || !raise(b, roundoff, lifting)) return std::nullopt;
+  if (!lifting.weights.allFinite() || !raise(columns, count, roundoff, lifting))
+    return std::nullopt;
   lifting.left = (lifting.left.array() > roundoff).select(lifting.left, 0);
   return lifting;
 }

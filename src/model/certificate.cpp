@@ -10,9 +10,13 @@ namespace rbvi {
 
 namespace {
 
-/// theta_1 x, theta_2 x, ...: what a block of terms is multiplied with.
-Vector by_terms(const Vector &theta, const Vector &x) {
-  return (x * theta.transpose()).reshaped();
+/// Adds factor * sum of theta_q (block q of `terms`) x to `result`, of few entries of x that are
+/// not zero.
+void add_terms(const Matrix &terms, const Vector &theta, const Vector &x, double factor,
+               Vector &result) {
+  for (Index q = 0; q < theta.size(); ++q)
+    for (Index k = 0; k < x.size(); ++k)
+      if (x[k] != 0) result += factor * theta[q] * x[k] * terms.col(q * x.size() + k);
 }
 
 /// What the condition leaves at the answer, and what of it is round-off.
@@ -64,13 +68,14 @@ Norms residual_norms(const CertificateModel &certificate, const Vector &theta_a,
   const Index count = std::ssize(certificate.references);
   Matrix references(theta_a.size(), count);
   Vector minus(count), plus(count);
-  const Vector of_u = by_terms(theta_a, u), of_z = by_terms(theta_a, z);
   for (Index j = 0; j < count; ++j) {
     const CertificateReference &at = certificate.references[j];
     references.col(j) = at.theta;
-    Vector residual = -(at.of_basis * of_u) - at.of_contact * pushed;
-    if (theta_f.size() > 0) residual += at.of_loads * theta_f;
-    const Vector lifted = at.of_lifting * of_z;
+    Vector residual = Vector::Zero(at.of_basis.rows()), lifted = residual;
+    add_terms(at.of_basis, theta_a, u, -1, residual);
+    add_terms(at.of_contact, Vector::Ones(1), pushed, -1, residual);
+    add_terms(at.of_loads, Vector::Ones(1), theta_f, 1, residual);
+    add_terms(at.of_lifting, theta_a, z, 1, lifted);
     minus[j] = (residual - lifted).norm();
     plus[j] = (residual + lifted).norm();
   }
@@ -100,24 +105,27 @@ std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scen
   pushed(certificate.dofs).setZero();
   if ((pushed.array() != 0).any()) return std::nullopt;
 
-  const Matrix of_lifting = b * certificate.lifting_trace;
   std::vector<int> own;
   for (const Index row : laws.normal)
     own.push_back(certificate.own[row]);
-  const std::optional<Lifting> lifting =
-      lift(of_lifting(laws.normal, Eigen::all), own, gaps.left(laws.normal), x(laws.normal),
-           gaps.roundoff);
+  const Matrix &functions = certificate.lifting_trace;
+  const auto moved = [&](const Matrix &trace) { return Matrix(b * trace); };
+  const std::optional<Lifting> lifting = lift(
+      [&](const std::vector<Index> &which) {
+        return Matrix(moved(functions(Eigen::all, which))(laws.normal, Eigen::all));
+      },
+      functions.cols(), own, gaps.left(laws.normal), x(laws.normal), gaps.roundoff);
   if (!lifting) return std::nullopt;
+  Vector z = Vector::Constant(functions.cols(), lifting->raised);
+  z(lifting->functions) += lifting->weights;
 
   const Vector theta_a = affine_coefficients(model.body.a, scene.a, scene, answer.mu);
   Vector theta_f;
   if (model.body.f.size() > 0)
     theta_f = affine_coefficients(model.body.f, scene.f, scene, answer.mu);
-  const Norms norms =
-      residual_norms(certificate, theta_a, theta_f, known, answer.u, lifting->weights);
+  const Norms norms = residual_norms(certificate, theta_a, theta_f, known, answer.u, z);
   double slack = x(laws.normal).dot(lifting->left);
-  if (laws.has_tangents())
-    slack += friction_slack(laws, x, gaps.left - of_lifting * lifting->weights);
+  if (laws.has_tangents()) slack += friction_slack(laws, x, gaps.left - b * Vector(functions * z));
   const ErrorBound bound = error_bound(norms.minus, norms.plus, slack);
 
   Matrix a;
@@ -126,7 +134,7 @@ std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scen
   bool certified = true;
   for (Index node = 0; node < laws.nodes(); ++node)
     certified = certified && (!laws.has_tangent(node) || is_given(laws.bound[node]));
-  return AnswerBound{bound.u, bound.multiplier, size, certified};
+  return AnswerBound{std::max(bound.u, bound.multiplier), size, certified};
 }
 
 CertificateModel rebased(CertificateModel certificate, const Matrix &c) {

@@ -2,6 +2,7 @@
 // are.
 #pragma once
 
+#include "certificate_part.hpp"
 #include "model_fields.hpp"
 #include "nitsche_part.hpp"
 #include "rbvi/contact/curve.hpp"
@@ -281,33 +282,6 @@ template <class Store, class Model> void list_law(const Store &store, Model &mod
   store("law/starts_mu", law.starts_mu, Shape{model.scene.parameters.size(), starts});
   const bool follows = law.states.size() > 0;
   store("law/states", law.states, Shape{follows ? contact : any_size, follows ? starts : any_size});
-}
-
-/// What bounds of errors are made of.
-template <class Store, class Model> void list_certificate(const Store &store, Model &model) {
-  auto &certificate = model.certificate;
-  const Index contact = model.contact.interfaces.empty() ? 0 : model.contact_dofs(),
-              terms = model.body.a.size();
-  store("certificate/dofs", certificate.dofs, Indices{contact});
-  store("certificate/lifting_trace", certificate.lifting_trace);
-  const Index lifting = certificate.lifting_trace.cols();
-  store.ask("certificate/lifting_trace does not fit",
-            [&] { return lifting == 0 || certificate.lifting_trace.rows() == contact; });
-  store("certificate/own", certificate.own, Indices{static_cast<int>(lifting), any_size, -1});
-  list_elements(
-      store, "certificate/count", "certificate", certificate.references,
-      [&](const std::string &at, auto &reference) {
-        store(at + "/theta", reference.theta, Shape{terms, 1});
-        store(at + "/of_basis", reference.of_basis, Shape{any_size, terms * model.primal_size()});
-        const Index rank = reference.of_basis.rows();
-        store(at + "/of_lifting", reference.of_lifting, Shape{rank, terms * lifting});
-        store(at + "/of_loads", reference.of_loads, Shape{rank, model.body.f.size()});
-        store(at + "/of_contact", reference.of_contact, Shape{rank, std::ssize(certificate.dofs)});
-      });
-  store.ask("certificate/own does not fit", [&] {
-    return certificate.references.empty() ||
-           std::ssize(certificate.own) == model.contact.dual_basis.rows();
-  });
 }
 
 template <class Store, class Errors>

@@ -283,15 +283,14 @@ void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vec
 
 void OnlineSolver::add_bound(const ReducedAnswer &solution, const Vector &lambda,
                              Outputs &outputs) const {
-  const bool asked = std::ranges::any_of(
-      std::array{"bound_u", "bound_lambda", "indicator_u", "indicator_lambda", "energy_norm"},
-      [&](const char *name) { return is_asked(only_, name); });
+  const bool asked =
+      std::ranges::any_of(std::array{"error_bound", "error_indicator", "energy_norm"},
+                          [&](const char *name) { return is_asked(only_, name); });
   if (model_.certificate.references.empty() || !asked) return;
   const std::optional<AnswerBound> bound = bound_of(model_, scene_, contact_, solution, lambda);
   if (!bound) return;
   const double size = std::max(bound->size, std::numeric_limits<double>::min());
-  (bound->certified ? outputs.bound_u : outputs.indicator_u) = bound->u / size;
-  (bound->certified ? outputs.bound_lambda : outputs.indicator_lambda) = bound->multiplier / size;
+  (bound->certified ? outputs.error_bound : outputs.error_indicator) = bound->error / size;
   outputs.energy_norm = std::sqrt(image_count(scene_.mirrors)) * bound->size;
 }
 

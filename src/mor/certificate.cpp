@@ -49,16 +49,11 @@ struct LiftedRows {
 LiftedRows lifted_rows(const Contact &contact, const ReducedModel &model) {
   const Matrix &dual = model.contact.dual_basis;
   LiftedRows rows{std::vector<int>(dual.rows(), -1), Matrix::Zero(dual.rows(), dual.rows())};
-  int count = 0;
-  std::vector<int> of_column(dual.cols(), -1); // a node of a law and its mirror image share one
+  int count = 0; // mirror images have one each: the basis is symmetric to its tolerance alone
   for (Index row = 0; row < dual.rows(); ++row) {
     if (!dual_row(contact, row).normal || dual.row(row).isZero(0)) continue;
-    Index column = 0;
-    dual.row(row).cwiseAbs().maxCoeff(&column);
-    const bool shared = model.contact.law && of_column[column] >= 0;
-    rows.own[row] = shared ? of_column[column] : count++;
-    of_column[column] = rows.own[row];
-    rows.forces(row, rows.own[row]) = 1;
+    rows.own[row] = count;
+    rows.forces(row, count++) = 1;
   }
   rows.forces.conservativeResize(dual.rows(), count);
   return rows;
@@ -213,6 +208,7 @@ CertificateModel make_certificate(Problem &problem, const LinearBasis &basis,
   LiftedRows rows = lifted_rows(problem.contact(), model);
   certificate.own = std::move(rows.own);
   certificate.dofs = pushed_dofs(problem, model, training);
+  if (std::ssize(certificate.dofs) > most_pushed_dofs) return {};
   const std::vector<Mu> references = reference_parameters(problem.scene());
   const Handle<Mat> lifting = lifting_functions(problem, references.front(), rows.forces);
   certificate.lifting_trace = restrict_to(problem.trace(), lifting.get());

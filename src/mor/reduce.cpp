@@ -191,7 +191,10 @@ StageRow bounds_row(const Scene &scene, const ReduceOptions &, const Reduction *
                         : StageRow{stage::bounds, "none: " + none, skipped};
   const std::vector<CertificateReference> &references = made->model.certificate.references;
   if (references.empty())
-    return {stage::bounds, "none: " + (none.empty() ? "contact alone holds a body" : none)};
+    return {stage::bounds,
+            "none: " + (none.empty() ? "contact alone holds a body, or pushes more than " +
+                                           std::to_string(most_pushed_dofs) + " dofs"
+                                     : none)};
   double numbers = static_cast<double>(made->model.certificate.lifting_trace.size());
   for (const CertificateReference &at : references)
     numbers += static_cast<double>(at.of_basis.size() + at.of_lifting.size() + at.of_loads.size() +

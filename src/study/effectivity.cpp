@@ -37,7 +37,7 @@ Effectivities effectivities(Problem &problem, const ReducedModel &model,
   constexpr double of_solver = 1e-8;
   Effectivities found;
   if (model.certificate.references.empty()) return found;
-  OnlineSolver solver(model, {.only = {"bound_u", "indicator_u", "energy_norm"}});
+  OnlineSolver solver(model, {.only = {"error_bound", "error_indicator", "energy_norm"}});
   for (const Sample &sample : samples) {
     Outputs outputs;
     Vector error = sample.u;
@@ -48,7 +48,8 @@ Effectivities effectivities(Problem &problem, const ReducedModel &model,
     } catch (const Error &) { // told where errors are
       continue;
     }
-    const std::optional<double> bound = outputs.bound_u ? outputs.bound_u : outputs.indicator_u;
+    const std::optional<double> bound =
+        outputs.error_bound ? outputs.error_bound : outputs.error_indicator;
     if (!bound) {
       ++found.without;
       continue;
@@ -62,8 +63,8 @@ Effectivities effectivities(Problem &problem, const ReducedModel &model,
       continue;
     }
     const double most = *bound * *outputs.energy_norm / images;
-    (outputs.bound_u ? found.values : found.indicators).push_back(most / distance);
-    if (outputs.bound_u && !(most + of_solver * size >= distance)) ++found.wrong;
+    (outputs.error_bound ? found.values : found.indicators).push_back(most / distance);
+    if (outputs.error_bound && !(most + of_solver * size >= distance)) ++found.wrong;
   }
   return found;
 }

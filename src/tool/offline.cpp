@@ -1,5 +1,6 @@
 // rbvi offline: from a case file to a model file.
 #include "failures.hpp"
+#include "greedy.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
@@ -21,7 +22,9 @@
 #include "rbvi/tool/workspace.hpp"
 #include "run_directory.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <iostream>
 #include <optional>
 #include <set>
@@ -179,6 +182,34 @@ void tell_of_errors(const ReducedModel &model, const std::filesystem::path &run)
       counted(model.scene.parameters.size(), "free parameter").c_str());
 }
 
+/// Samples at the training set and, where -greedy asks for it, at those of its pool that bounds of
+/// the errors of models of the samples before choose; `bounds`: the largest of each model.
+/// Collective.
+Sweep chosen_samples(MPI_Comm world, const OfflineOptions &options, const Groups &groups,
+                     std::vector<Mu> set, Workspace &work,
+                     const std::function<Sweep(const std::vector<Mu> &)> &sweep_at,
+                     std::vector<double> &bounds) {
+  const GreedyPool pool = greedy_pool(options);
+  Sweep sweep = sweep_at(set);
+  if (pool.candidates.empty()) return sweep;
+  while (true) {
+    Problem &problem = work.world_problem();
+    const Reduction made = reduce(problem, sweep.samples, options.reduce);
+    const NextSamples next = next_samples(
+        world, made.model, problem.scene(), pool.candidates, set,
+        std::min<std::size_t>(groups.count(), pool.most - std::min(pool.most, set.size())));
+    bounds.push_back(next.largest);
+    if (rank_of(world) == 0)
+      std::printf(
+          "  %zu samples: largest bound %s%s\n", set.size(), short_number(next.largest).c_str(),
+          next.mu.empty() ? ""
+                          : (" at " + describe(options.scene.parameters, next.mu.front())).c_str());
+    if (next.largest <= pool.tolerance || next.mu.empty()) return sweep;
+    set.insert(set.end(), next.mu.begin(), next.mu.end());
+    sweep = sweep_at(set);
+  }
+}
+
 } // namespace
 
 std::vector<Mu> checked_training(const OfflineOptions &options) {
@@ -187,6 +218,7 @@ std::vector<Mu> checked_training(const OfflineOptions &options) {
   check_set(options.scene, training);
   check_reduction(options.scene, options.reduce);
   check_eigen_options(options, EigenUse::supremizers);
+  greedy_pool(options);
   return training;
 }
 
@@ -215,18 +247,21 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const OfflineOption
   StageTable before = std::move(plan.before), after = closing_stages();
   Workspace work = std::move(plan.work);
   check_imposed_at(work.group_problem(), training);
-  Sweep sweep = timed(before, stage::snapshots, [&] {
+  const auto sweep_at = [&](const std::vector<Mu> &set) {
     return run_sweep(
-        world, groups, work.group_problem(), options.hf, training,
+        world, groups, work.group_problem(), options.hf, set,
         {options.out / "samples", [&] { begin_run(world, options); }, Fields::in_files});
+  };
+  std::vector<double> bounds; // of -greedy
+  Sweep sweep = timed(before, stage::snapshots, [&] {
+    return chosen_samples(world, options, groups, training, work, sweep_at, bounds);
   });
   work.end_of_solves();
-  check_failures(options.scene.parameters, options.max_failures, sweep.report, training.size(),
-                 "training");
+  const std::size_t solved = sweep.samples.size() + sweep.report.failed.size();
+  check_failures(options.scene.parameters, options.max_failures, sweep.report, solved, "training");
   if (will_run(before, stage::distributed_mesh))
     timed(before, stage::distributed_mesh, [&] { work.world_problem(); });
-  before =
-      finished_stages(before, preparation_stages(options, training.size(), groups, &sweep.report));
+  before = finished_stages(before, preparation_stages(options, solved, groups, &sweep.report));
   Problem &problem = work.world_problem();
   StageTable reduction;
   std::optional<ReducedModel> kept = with_other_outputs(world, options, problem, sweep);
@@ -238,6 +273,7 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const OfflineOption
   } else {
     Reduction made = reduce(problem, sweep.samples, options.reduce);
     model = finished_model(made, options, sweep, before);
+    if (!bounds.empty()) model.made.histories["greedy/bound"] = bounds;
     reduction = std::move(made.stages);
     fields = std::move(made.bases.pod.basis);
   }
@@ -300,7 +336,8 @@ void command_offline(const OfflineOptions &options) {
                    options.out / "samples.csv", case_of_run(options.out), options.out / "samples"});
   }
   warn_of_eigen_options(world, options);
-  report_failures(options.scene.parameters, run.sweep.report, training.size(), "training",
+  report_failures(options.scene.parameters, run.sweep.report,
+                  run.sweep.samples.size() + run.sweep.report.failed.size(), "training",
                   "the model is made from the others, and answers next to a failed one with a "
                   "warning");
 }

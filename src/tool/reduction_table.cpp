@@ -174,9 +174,10 @@ std::vector<Option> of_collocation(ReduceOptions &o) {
 }
 
 std::vector<Option> of_bounds(ReduceOptions &o) {
-  return {flag("certify", o.certify,
-               "every answer has a bound of its error in the energy norm (bound_u), or with "
-               "Coulomb's law an indicator; where A and the load are sums of exact terms")};
+  return {
+      kept(flag("certify", o.certify,
+                "every answer has a bound of its error in the energy norm (error_bound), or with "
+                "Coulomb's law an indicator; where A and the load are sums of exact terms"))};
 }
 
 std::vector<Option> of_nitsche(NitscheOptions &solver, ReduceOptions &o) {

@@ -279,6 +279,15 @@ Option ranks_per_solve(int &place) {
 
 std::vector<Option> of_sweeps(OfflineOptions &o) {
   return {
+      kept(otherwise(
+          "none", text("greedy", OptionKind::set, "set", o.greedy,
+                       "parameters, given as -train is, of which those with the largest bound of "
+                       "the error (-certify) are solved next, as many at a time as there are "
+                       "groups of ranks, until all bounds are below -greedy_tolerance"))),
+      number("greedy_tolerance", relative_error, o.greedy_tolerance,
+             "bound of the error of u over u, in the energy norm, at which -greedy ends"),
+      number("greedy_samples", {1, 1000000}, o.greedy_samples,
+             "most samples of -greedy, with those of -train"),
       ranks_per_solve(o.ranks_per_solve),
       number(
           "sweep_max_failures", {0, 1}, o.max_failures,

@@ -359,8 +359,8 @@ void command_verify(const MeasureOptions &given) {
     make_directory(out);
     for (const char *of_another_model : {"infsup.csv", "infsup_training.csv", "stability.csv"})
       fs::remove(out / of_another_model);
-    const double query = check_errors(model, problem.w_product(), truths, boundary, only, out);
-    tell_of_speed(query, sweep.report.seconds_per_solve);
+    tell_of_speed(check_errors(model, problem.w_product(), truths, boundary, only, out),
+                  sweep.report.seconds_per_solve);
     look_for_other_answers(model, problem.scene(), from_columns(model.made.validated_mu));
     print_several_answers(std::cout, model);
     write_model(model, options.out / "model.h5");

@@ -15,6 +15,7 @@ from small_runs import RUNS
 
 PLACEHOLDERS = {
     "I": ("0", "1"),
+    "R": ("0", "1", "2"),
     "T": ("consistency", "contact_matrix", "contact_vector", "friction_matrix", "friction_vector"),
     "OPERATOR": ("a", "b", "f", "g", "b_normal", "b_tangential"),
     "TERM": ("contact_matrix", "contact_vector", "friction_matrix", "friction_vector"),

@@ -33,7 +33,7 @@ RUNS = {
     "two_disks": ["-case", CASES / "two_disks/case.yaml", "-train", "grid:9"],
     "two_disks_cone": ["-case", CASES / "two_disks/case.yaml", "-variant", "cone", "-train", "grid:9"],
     "disk_none": [*DISK, "-train", "grid:9", "-friction", "none"],
-    "disk_condensed": [*DISK, "-train", "grid:3,3", "-parameters", "radius,core_stiffness"],
+    "disk_condensed": [*DISK, "-train", "grid:3,3", "-parameters", "radius,core_stiffness", "-certify"],
     "disk_collocated": [*DISK, "-train", "grid:15", "-normal", "rigid", REDUCED, "collocated"],
     "disk_large": ["-case", CASES / "rigid_disk/case.yaml", "-variant", "large", "-train", "random:8:1"],
     "disk_large_cone": ["-case", CASES / "rigid_disk/case.yaml", "-variant", "large", "-train", "random:8:1",

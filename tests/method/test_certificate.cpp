@@ -69,12 +69,15 @@ Certified certify(const Problem &p, const Vector &u, const Vector &l) {
   std::vector<int> own;
   for (Index row = 0; row < n; ++row)
     own.push_back(static_cast<int>(row));
-  const auto lifting = lift(p.b.topRows(n) * functions, own, s.head(n), l.head(n), 1e-14);
+  const Matrix of_functions = p.b.topRows(n) * functions;
+  const auto lifting = lift(columns_of(of_functions), n, own, s.head(n), l.head(n), 1e-14);
   if (!lifting) {
     ADD_FAILURE() << "not lifted";
     return {};
   }
-  const Vector z = functions * lifting->weights, v = u - z, r = p.f - p.a * u - p.b.transpose() * l;
+  Vector weights = Vector::Constant(n, lifting->raised);
+  weights(lifting->functions) += lifting->weights;
+  const Vector z = functions * weights, v = u - z, r = p.f - p.a * u - p.b.transpose() * l;
   EXPECT_GE((p.g - p.b * v).head(n).minCoeff(), -1e-12);
   double slack = l.head(n).dot(lifting->left);
   const Vector slip = p.b * v - p.g;
@@ -164,17 +167,26 @@ TEST(Certificate, NormOverReferences) {
   }
 }
 
-/// A row that nothing lifts is found; mirror images share a function.
+std::optional<Lifting> lifted_by(const Matrix &b, const std::vector<int> &own, const Vector &s,
+                                 const Vector &l) {
+  return lift(columns_of(b), b.cols(), own, s, l, 1e-15);
+}
+
+/// What is not lifted by a function of its own is raised, or it is said; mirror images share one.
 TEST(Certificate, LiftsWhatItCan) {
   const Matrix b = Matrix{{2.0, 1.0}, {1.0, 2.0}, {0.5, -0.1}};
   const Vector l = Vector{{1.0, 0.0, 0.0}};
-  const auto lifting = lift(b, {0, 1, -1}, Vector{{-0.1, 0.2, -3.0}}, l, 1e-15);
+  const auto lifting = lifted_by(b, {0, 1, -1}, Vector{{-0.1, 0.2, -3.0}}, l);
   ASSERT_TRUE(lifting);
+  EXPECT_EQ(lifting->functions, (std::vector<Index>{0, 1}));
   EXPECT_NEAR((b * lifting->weights)[0], -0.1, 1e-14);
   EXPECT_EQ(lifting->left.head(2), Vector::Zero(2));
-  EXPECT_FALSE(lift(-b, {0, 1, -1}, Vector{{0.1, 0.2, 0.3}}, l, 1e-15)) << "the third stays below";
-  const Matrix mirrored = Matrix{{2.0}, {2.0}};
-  const auto pair = lift(mirrored, {0, 0}, Vector{{0.1, 0.1}}, Vector{{1.0, 1.0}}, 1e-15);
+  const auto raised = lifted_by(b, {0, 1, -1}, Vector{{0.1, 0.2, 0.3}}, l);
+  ASSERT_TRUE(raised);
+  EXPECT_GT(raised->raised, 0);
+  EXPECT_GE(raised->left.minCoeff(), 0);
+  EXPECT_FALSE(lifted_by(-b, {0, 1, -1}, Vector{{0.1, 0.2, 0.3}}, l)) << "the third stays below";
+  const auto pair = lifted_by(Matrix{{2.0}, {2.0}}, {0, 0}, Vector{{0.1, 0.1}}, Vector{{1.0, 1.0}});
   ASSERT_TRUE(pair);
   EXPECT_NEAR(pair->weights[0], 0.05, 1e-15);
   EXPECT_EQ(pair->left, Vector::Zero(2));

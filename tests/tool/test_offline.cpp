@@ -139,7 +139,9 @@ TEST_F(Offline, CountsQueriesAtWhichACoefficientIsNotFinite) {
 }
 
 TEST_F(Offline, CountsQueriesAtWhichAPlaneIsNowhere) {
-  const std::function<Coefficient> nowhere = [](const FullMu &mu) { return between_samples(mu, nan, 0); };
+  const std::function<Coefficient> nowhere = [](const FullMu &mu) {
+    return between_samples(mu, nan, 0);
+  };
   options.scene.contacts = {rigid_surface({"contact", plane_surface({0, -1, 0}, {}, nowhere)})};
   expect_unanswered("the position or the tilt of a rigid plane is not finite");
 }
@@ -172,4 +174,44 @@ TEST_F(Offline, RefusesImposedDisplacementsThatContradictAtATrainingParameter) {
 }
 
 } // namespace
+/// The push is the same at all points of the top: an exact load, so that errors have bounds.
+ToolOptions greedily(ToolOptions options) {
+  const auto along = [](const Point &way, const char *name, int index) {
+    return ImposedTerm{everywhere(way), {{{name, parameter(index), {index}}}}};
+  };
+  options.scene.fixed.front().values = {along({1, 0, 0}, "aside", 1), along({0, -1, 0}, "down", 0)};
+  options.train = "grid:1,1";
+  options.greedy = "grid:5,5";
+  options.reduce.certify = true;
+  return options;
+}
+
+/// The bounds of the last model are met, by few of the pool, and none is solved twice.
+TEST_F(Offline, GreedyTakesSamplesUntilTheBoundsAreMet) {
+  options = greedily(options);
+  options.greedy_tolerance = 1e-6;
+  const OfflineRun made = run();
+  const std::vector<double> &bounds = made.model.made.histories.at("greedy/bound");
+  EXPECT_GT(bounds.front(), 1e-6);
+  EXPECT_LE(bounds.back(), 1e-6);
+  std::vector<Mu> taken = parameters_of(made.sweep.samples);
+  EXPECT_LT(taken.size(), 20U);
+  EXPECT_GE(taken.size(), bounds.size());
+  std::ranges::sort(taken);
+  EXPECT_EQ(std::ranges::adjacent_find(taken), taken.end());
+}
+
+TEST_F(Offline, GreedyEndsAtItsMostSamples) {
+  options = greedily(options);
+  options.greedy_tolerance = 0;
+  options.greedy_samples = 4;
+  EXPECT_EQ(run().sweep.samples.size(), 4U);
+}
+
+TEST_F(Offline, GreedyNeedsBounds) {
+  options = greedily(options);
+  options.reduce.certify = false;
+  expect_refused("add -certify");
+}
+
 } // namespace rbvi::offline_test

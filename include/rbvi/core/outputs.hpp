@@ -61,8 +61,8 @@ struct Outputs {
   /// Largest relative errors of the reduced model over its validation set (not of this answer).
   std::optional<double> expected_error_u, expected_error_lambda;
   /// Of this reduced answer, |u - u_N| and |B^T (lambda - lambda_N)| at most, over |u_N|, all in
-  /// the energy norm; indicators where friction follows the pressure; |u_N| itself.
-  std::optional<double> bound_u, bound_lambda, indicator_u, indicator_lambda, energy_norm;
+  /// the energy norm; an indicator where friction follows the pressure; |u_N| itself.
+  std::optional<double> error_bound, error_indicator, energy_norm;
   std::optional<double> iterations;
   /// Large deformations: load steps that the answer took, where steps from its start failed; else
   /// 0.

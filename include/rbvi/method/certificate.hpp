@@ -15,6 +15,7 @@
 #pragma once
 
 #include "rbvi/core/dense.hpp"
+#include "rbvi/method/lcp.hpp"
 
 #include <optional>
 #include <vector>
@@ -36,16 +37,19 @@ ErrorBound error_bound(double minus, double plus, double slack);
 /// Infinite where A is no such sum.
 double norm_over_references(const Matrix &references, const Vector &theta, const Vector &norms);
 
-/// z as a combination of lifting functions, and B_n z - s >= 0 at every row.
+/// z as a combination of some lifting functions and, `raised` times, of the sum of all; and
+/// B_n z - s >= 0 at every row.
 struct Lifting {
+  std::vector<Index> functions;
   Vector weights, left;
+  double raised = 0;
 };
 
-/// `b`: B_n of the lifting functions, rows x m; `own`: of each row the function that lifts it, -1:
-/// none does; `s`, `multiplier`: rows. Rows whose multiplier stays positive under s get B_n z = s,
-/// others as much as they need. What is left within `roundoff` of zero is zero. Nothing where some
-/// row cannot be lifted.
-std::optional<Lifting> lift(const Matrix &b, const std::vector<int> &own, const Vector &s,
-                            const Vector &multiplier, double roundoff);
+/// `columns`: B_n of some of the `count` lifting functions; `own`: of each row the function that
+/// lifts it, -1: none does; `s`, `multiplier`: rows. Rows whose multiplier stays positive under s
+/// get B_n z = s, others as much as they need. What is left within `roundoff` of zero is zero.
+/// Nothing where some row cannot be lifted.
+std::optional<Lifting> lift(const ColumnSource &columns, Index count, const std::vector<int> &own,
+                            const Vector &s, const Vector &multiplier, double roundoff);
 
 } // namespace rbvi

@@ -14,9 +14,8 @@ namespace rbvi {
 
 /// In the norm of A(mu), of the part of the body that is modelled.
 struct AnswerBound {
-  double u;          ///< of |u - u_N|
-  double multiplier; ///< of |B^T (l - l_N)|, in A^-1
-  double size;       ///< |u_N|
+  double error; ///< of |u - u_N|, and of |B^T (l - l_N)| in A^-1
+  double size;  ///< |u_N|
   /// The law is one for which it is a bound: none of friction, or Tresca's with the same threshold
   /// everywhere. Else it is that of the problem whose bound of friction is the answer's own.
   bool certified;

@@ -11,6 +11,9 @@
 
 namespace rbvi {
 
+/// Contact dofs beyond which there are no bounds: their representers would fill the memory.
+inline constexpr int most_pushed_dofs = 3000;
+
 /// Why answers to a scene have no bound; empty: they have one.
 std::string no_certificate(const Scene &scene);
 

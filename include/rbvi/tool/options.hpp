@@ -36,7 +36,10 @@ struct RunFiles {
 
 /// What a reduced model is made of, and how.
 struct OfflineOptions : Setup, RunFiles {
-  std::string train; ///< as parse_set reads it
+  std::string train;  ///< as parse_set reads it
+  std::string greedy; ///< likewise: where bounds of errors may choose further samples; "": nowhere
+  double greedy_tolerance = 1e-3;
+  int greedy_samples = 200; ///< most of them, with those of `train`
   ReduceOptions reduce;
   int ranks_per_solve = 0;   ///< 0: auto, as group_ranks chooses
   double max_failures = 0.1; ///< share of a set that may fail

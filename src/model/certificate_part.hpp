@@ -1,0 +1,35 @@
+// The fields of model.h5 that bounds of errors are made of.
+#pragma once
+
+#include "model_fields.hpp"
+
+namespace rbvi {
+
+/// What bounds of errors are made of.
+template <class Store, class Model> void list_certificate(const Store &store, Model &model) {
+  auto &certificate = model.certificate;
+  const Index contact = model.contact.interfaces.empty() ? 0 : model.contact_dofs(),
+              terms = model.body.a.size();
+  store("certificate/dofs", certificate.dofs, Indices{contact});
+  store("certificate/lifting_trace", certificate.lifting_trace);
+  const Index lifting = certificate.lifting_trace.cols();
+  store.ask("certificate/lifting_trace does not fit",
+            [&] { return lifting == 0 || certificate.lifting_trace.rows() == contact; });
+  store("certificate/own", certificate.own, Indices{static_cast<int>(lifting), any_size, -1});
+  list_elements(
+      store, "certificate/count", "certificate", certificate.references,
+      [&](const std::string &at, auto &reference) {
+        store(at + "/theta", reference.theta, Shape{terms, 1});
+        store(at + "/of_basis", reference.of_basis, Shape{any_size, terms * model.primal_size()});
+        const Index rank = reference.of_basis.rows();
+        store(at + "/of_lifting", reference.of_lifting, Shape{rank, terms * lifting});
+        store(at + "/of_loads", reference.of_loads, Shape{rank, model.body.f.size()});
+        store(at + "/of_contact", reference.of_contact, Shape{rank, std::ssize(certificate.dofs)});
+      });
+  store.ask("certificate/own does not fit", [&] {
+    return certificate.references.empty() ||
+           std::ssize(certificate.own) == model.contact.dual_basis.rows();
+  });
+}
+
+} // namespace rbvi
