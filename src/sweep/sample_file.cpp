@@ -15,7 +15,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr int sample_schema = 12;
+constexpr int sample_schema = 13;
 
 void check_settings(const std::filesystem::path &path, const Settings &mine,
                     const Settings &theirs) {

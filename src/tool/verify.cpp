@@ -309,6 +309,13 @@ void measure_bounds(Problem &problem, const ReducedModel &model, const std::vect
                                                   "please report the case");
 }
 
+/// Without what of another model would stay in it.
+void make_own_directory(const fs::path &out) {
+  make_directory(out);
+  for (const char *of_another_model : {"infsup.csv", "infsup_training.csv", "stability.csv"})
+    fs::remove(out / of_another_model);
+}
+
 void tell_of_speed(double query, double solve) {
   const std::string slow = slow_query(query, solve);
   if (!slow.empty()) std::cout << "warning: " << slow << '\n';
@@ -356,9 +363,7 @@ void command_verify(const MeasureOptions &given) {
   collectively(world, [&] {
     if (rank_of(world) != 0) return;
     sweep_up(options.out);
-    make_directory(out);
-    for (const char *of_another_model : {"infsup.csv", "infsup_training.csv", "stability.csv"})
-      fs::remove(out / of_another_model);
+    make_own_directory(out);
     tell_of_speed(check_errors(model, problem.w_product(), truths, boundary, only, out),
                   sweep.report.seconds_per_solve);
     look_for_other_answers(model, problem.scene(), from_columns(model.made.validated_mu));

@@ -174,12 +174,10 @@ TEST_F(Offline, RefusesImposedDisplacementsThatContradictAtATrainingParameter) {
 }
 
 } // namespace
-/// The push is the same at all points of the top: an exact load, so that errors have bounds.
+/// Of a half-disk whose core is of a stiffness of its own, from a sample in the middle of the box.
 ToolOptions greedily(ToolOptions options) {
-  const auto along = [](const Point &way, const char *name, int index) {
-    return ImposedTerm{everywhere(way), {{{name, parameter(index), {index}}}}};
-  };
-  options.scene.fixed.front().values = {along({1, 0, 0}, "aside", 1), along({0, -1, 0}, "down", 0)};
+  options.scene = make_scene("rigid_disk", {{"arc_edges", "24"}, {"friction", "none"}});
+  options.scene.parameters = free_only(options.scene.parameters, "radius,core_stiffness");
   options.train = "grid:1,1";
   options.greedy = "grid:5,5";
   options.reduce.certify = true;
@@ -189,11 +187,11 @@ ToolOptions greedily(ToolOptions options) {
 /// The bounds of the last model are met, by few of the pool, and none is solved twice.
 TEST_F(Offline, GreedyTakesSamplesUntilTheBoundsAreMet) {
   options = greedily(options);
-  options.greedy_tolerance = 1e-6;
+  options.greedy_tolerance = 1e-4;
   const OfflineRun made = run();
   const std::vector<double> &bounds = made.model.made.histories.at("greedy/bound");
-  EXPECT_GT(bounds.front(), 1e-6);
-  EXPECT_LE(bounds.back(), 1e-6);
+  EXPECT_GT(bounds.front(), 1e-4);
+  EXPECT_LE(bounds.back(), 1e-4);
   std::vector<Mu> taken = parameters_of(made.sweep.samples);
   EXPECT_LT(taken.size(), 20U);
   EXPECT_GE(taken.size(), bounds.size());
