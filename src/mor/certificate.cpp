@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t most_axes = 2; ///< parameters of A beside its common coefficient
 constexpr double dependent = 1e-13;  ///< what is left of a representer among the others
+constexpr int most_dofs = 3000;      ///< more would fill the memory with their representers
 
 bool has_mapped_terms(const Sum &sum) {
   return std::ranges::any_of(sum, [](const Term &term) { return !term.theta; });
@@ -199,16 +200,19 @@ std::string no_certificate(const Scene &of) {
   return "";
 }
 
-CertificateModel make_certificate(Problem &problem, const LinearBasis &basis,
-                                  const ReducedModel &model, const std::vector<Mu> &training) {
+Certificate make_certificate(Problem &problem, const LinearBasis &basis, const ReducedModel &model,
+                             const std::vector<Mu> &training) {
+  if (std::string none = no_certificate(problem.scene()); !none.empty()) return {{}, none};
+  if (!problem.free_bodies().empty()) return {{}, "contact alone holds a body"};
+  if (!model.contact.trace_dofs.empty())
+    return {{}, "the model knows displacements near contact alone"};
   CertificateModel certificate;
-  if (!no_certificate(problem.scene()).empty() || !problem.free_bodies().empty() ||
-      !model.contact.trace_dofs.empty())
-    return certificate;
   LiftedRows rows = lifted_rows(problem.contact(), model);
   certificate.own = std::move(rows.own);
   certificate.dofs = pushed_dofs(problem, model, training);
-  if (std::ssize(certificate.dofs) > most_pushed_dofs) return {};
+  if (std::ssize(certificate.dofs) > most_dofs)
+    return {{}, "multipliers push more than " + std::to_string(most_dofs) + " contact dofs"};
+
   const std::vector<Mu> references = reference_parameters(problem.scene());
   const Handle<Mat> lifting = lifting_functions(problem, references.front(), rows.forces);
   certificate.lifting_trace = restrict_to(problem.trace(), lifting.get());
@@ -216,7 +220,7 @@ CertificateModel make_certificate(Problem &problem, const LinearBasis &basis,
   for (const Mu &mu : references)
     certificate.references.push_back(
         reference_at(problem, mu, columns.get(), lifting.get(), certificate.dofs));
-  return certificate;
+  return {std::move(certificate), ""};
 }
 
 } // namespace rbvi

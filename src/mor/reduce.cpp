@@ -185,16 +185,11 @@ void add_projection(const Scene &scene, void (*projects)(Reducing &),
 namespace {
 
 StageRow bounds_row(const Scene &scene, const ReduceOptions &, const Reduction *made) {
-  std::string none = no_certificate(scene);
-  if (made == nullptr)
-    return none.empty() ? StageRow{stage::bounds, "norms of the residual at reference parameters"}
-                        : StageRow{stage::bounds, "none: " + none, skipped};
+  if (const std::string none = no_certificate(scene); !none.empty())
+    return {stage::bounds, "none: " + none, skipped};
+  if (made == nullptr) return {stage::bounds, "norms of the residual at reference parameters"};
+  if (!made->no_bounds.empty()) return {stage::bounds, "none: " + made->no_bounds};
   const std::vector<CertificateReference> &references = made->model.certificate.references;
-  if (references.empty())
-    return {stage::bounds,
-            "none: " + (none.empty() ? "contact alone holds a body, or pushes more than " +
-                                           std::to_string(most_pushed_dofs) + " dofs"
-                                     : none)};
   double numbers = static_cast<double>(made->model.certificate.lifting_trace.size());
   for (const CertificateReference &at : references)
     numbers += static_cast<double>(at.of_basis.size() + at.of_lifting.size() + at.of_loads.size() +
@@ -205,8 +200,10 @@ StageRow bounds_row(const Scene &scene, const ReduceOptions &, const Reduction *
 }
 
 void keep_bounds(Reducing &at) {
-  at.made.model.certificate = make_certificate(at.problem, at.made.bases.pod.basis, at.made.model,
-                                               parameters_of(at.samples));
+  Certificate made = make_certificate(at.problem, at.made.bases.pod.basis, at.made.model,
+                                      parameters_of(at.samples));
+  at.made.model.certificate = std::move(made.model);
+  at.made.no_bounds = std::move(made.none);
 }
 
 std::string self_check_text(const Reduction *made) {

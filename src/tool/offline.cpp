@@ -195,6 +195,9 @@ Sweep chosen_samples(MPI_Comm world, const OfflineOptions &options, const Groups
   while (true) {
     Problem &problem = work.world_problem();
     const Reduction made = reduce(problem, sweep.samples, options.reduce);
+    if (!made.no_bounds.empty())
+      throw failure("-greedy chooses samples by bounds of errors, and there are none: " +
+                    made.no_bounds);
     const NextSamples next = next_samples(
         world, made.model, problem.scene(), pool.candidates, set,
         std::min<std::size_t>(groups.count(), pool.most - std::min(pool.most, set.size())));

@@ -175,7 +175,8 @@ std::vector<Option> of_collocation(ReduceOptions &o) {
 
 std::vector<Option> of_bounds(ReduceOptions &o) {
   return {
-      kept(flag("certify", o.certify,
+      kept(use::certified,
+           flag("certify", o.certify,
                 "every answer has a bound of its error in the energy norm (error_bound), or with "
                 "Coulomb's law an indicator; where A and the load are sums of exact terms"))};
 }

@@ -94,6 +94,7 @@ const Use online{nullptr, has_online_method,
                  "-multiplier_reduction collocated (uzawa), for contact with multipliers that "
                  "follows the displacement (kacanov), or for -nitsche_quadrature interpolated "
                  "(newton)"};
+const Use certified{nullptr, [](const OfflineOptions &o) { return o.reduce.certify; }, "-certify"};
 const Use not_exact{
     nullptr, [](const OfflineOptions &o) { return o.reduce.online_method != OnlineMethod::exact; },
     ""};

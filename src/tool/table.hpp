@@ -30,7 +30,7 @@ extern const Use dual_basis, law, hats, collocated, rows_apart, tangential_rows;
 /// Of Nitsche's method, its terms, and its rules for the curve.
 extern const Use nitsche, coulomb_terms, empirical, interpolated;
 /// Of models that can be asked by -online_method, and whose method is not the default.
-extern const Use online, not_exact;
+extern const Use online, not_exact, certified;
 
 } // namespace use
 

@@ -11,16 +11,19 @@
 
 namespace rbvi {
 
-/// Contact dofs beyond which there are no bounds: their representers would fill the memory.
-inline constexpr int most_pushed_dofs = 3000;
-
 /// Why answers to a scene have no bound; empty: they have one.
 std::string no_certificate(const Scene &scene);
 
-/// For a model that was projected on `basis`; nothing, references empty, where the scene has none.
-/// Reference parameters are the ends and the middle of each parameter of A beside its common
-/// coefficient. `training`: where multipliers push which contact dofs is seen there. Collective.
-CertificateModel make_certificate(Problem &problem, const LinearBasis &basis,
-                                  const ReducedModel &model, const std::vector<Mu> &training);
+/// What is kept, or why answers have no bound.
+struct Certificate {
+  CertificateModel model{};
+  std::string none{};
+};
+
+/// Of a model that was projected on `basis`. Reference parameters are the ends and the middle of
+/// each parameter of A beside its common coefficient. `training`: which contact dofs multipliers
+/// push is seen there. Collective.
+Certificate make_certificate(Problem &problem, const LinearBasis &basis, const ReducedModel &model,
+                             const std::vector<Mu> &training);
 
 } // namespace rbvi

@@ -102,9 +102,11 @@ struct Reduction {
   AffineOperators affine;
   ReducedBases bases;
   ReducedModel model;
-  int ring = 0;      ///< layers of nodes of a hybrid cone, ReduceOptions::cone.ring or more
-  Gcns collocation;  ///< of MultiplierReduction::collocated
-  CurveReport curve; ///< of Nitsche's method
+  int ring = 0;            ///< layers of nodes of a hybrid cone, ReduceOptions::cone.ring or more
+  Gcns collocation;        ///< of MultiplierReduction::collocated
+  CurveReport curve;       ///< of Nitsche's method
+  std::string no_bounds{}; ///< why answers have no bounds where they are wanted
+
   StageTable stages; ///< reduction_stages(), timed
 };
 
