@@ -127,6 +127,7 @@ std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scen
   double slack = x(laws.normal).dot(lifting->left);
   if (laws.has_tangents()) slack += friction_slack(laws, x, gaps.left - b * Vector(functions * z));
   const ErrorBound bound = error_bound(norms.minus, norms.plus, slack);
+  if (!std::isfinite(bound.u)) return std::nullopt; // A is no sum of those at the references
 
   Matrix a;
   stiffness_of(model, theta_a, a);

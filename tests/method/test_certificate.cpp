@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -19,7 +20,9 @@ struct Problem {
   NodeLaws laws;
 
   double norm(const Vector &u) const { return std::sqrt(u.dot(a * u)); }
-  double dual_norm(const Vector &r) const { return std::sqrt(r.dot(Vector(lu_solve(a, r)))); }
+  double dual_norm(const Vector &r) const {
+    return std::sqrt(std::max(0.0, r.dot(Vector(lu_solve(a, r)))));
+  }
   Index nodes() const { return laws.nodes(); }
   /// Of admissible v, with the work of friction.
   double energy(const Vector &v) const {
@@ -82,7 +85,8 @@ Certified certify(const Problem &p, const Vector &u, const Vector &l) {
   double slack = l.head(n).dot(lifting->left);
   const Vector slip = p.b * v - p.g;
   for (Index row = n; row < p.b.rows(); ++row)
-    slack += p.laws.bound[row - n].value(1) * std::abs(slip[row]) - l[row] * slip[row];
+    slack += std::max(0.0, p.laws.bound[row - n].value(1) * std::abs(slip[row]) -
+                               l[row] * slip[row]); // of round-off where it slips
   return {error_bound(p.dual_norm(r - p.a * z), p.dual_norm(r + p.a * z), slack), v};
 }
 

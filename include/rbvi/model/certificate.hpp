@@ -21,8 +21,9 @@ struct AnswerBound {
   bool certified;
 };
 
-/// `lambda`: of the answer, at the dual dofs. Nothing where the model keeps nothing for it, or
-/// where multipliers push or gaps are open at nodes of which it knows nothing.
+/// `lambda`: of the answer, at the dual dofs. Nothing where the model keeps nothing for it, where
+/// multipliers push or gaps are open at nodes of which it knows nothing, or where A is outside of
+/// what its references span.
 std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scene,
                                     const Contact &contact, const ReducedAnswer &answer,
                                     const Vector &lambda);
