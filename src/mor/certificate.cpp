@@ -7,6 +7,7 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/columns.hpp"
 #include "rbvi/solve/linear.hpp"
+#include "shared_stages.hpp"
 
 #include <algorithm>
 #include <set>
@@ -18,10 +19,6 @@ namespace {
 constexpr std::size_t most_axes = 2; ///< parameters of A beside its common coefficient
 constexpr double dependent = 1e-13;  ///< what is left of a representer among the others
 constexpr int most_dofs = 3000;      ///< more would fill the memory with their representers
-
-bool has_mapped_terms(const Sum &sum) {
-  return std::ranges::any_of(sum, [](const Term &term) { return !term.theta; });
-}
 
 /// The ends and the middle, in its coordinate, of each parameter that A depends on beside its
 /// common coefficient; the others in the middle. The middle of all comes first.
@@ -99,13 +96,6 @@ Handle<Mat> loads_of(const Problem &problem, Mat like) {
   return dense_like(like, columns);
 }
 
-/// X^T Y of columns over the ranks.
-Matrix products(Mat x, Mat y) {
-  Matrix result = BorrowedRows(x).rows().transpose() * BorrowedRows(y).rows();
-  over_ranks(comm_of(x), MPI_SUM, result);
-  return result;
-}
-
 /// The residual's parts at the reference that the problem is assembled at.
 class Representers {
 public:
@@ -128,23 +118,26 @@ public:
     for (std::size_t q = 1; q < terms.size(); ++q)
       span(product(terms[q].get(), x).get());
   }
-  void span(Mat loads) {
-    append_orthonormalised(basis_, solved(ksp_.get(), loads).get(), dependent);
-  }
+  /// A^-1 of columns.
+  Handle<Mat> responses(Mat loads) const { return solved(ksp_.get(), loads); }
+  void span(Mat loads) { append_orthonormalised(basis_, responses(loads).get(), dependent); }
   /// rank x (terms * columns of x): A_q X term by term.
   Matrix of_terms(Mat x) const {
     const BorrowedColumns columns(basis_.columns.get());
     const std::vector<Handle<Mat>> &terms = problem_.a_terms().exact;
     Matrix result;
     for (std::size_t q = 0; q < terms.size(); ++q) {
-      const Matrix part = products(columns.get(), product(terms[q].get(), x).get());
+      const Matrix part = projected(columns.get(), terms[q].get(), x);
       result.conservativeResize(part.rows(), part.cols() * std::ssize(terms));
       result.middleCols(static_cast<Index>(q) * part.cols(), part.cols()) = part;
     }
     return result;
   }
   Matrix of_loads(Mat loads) const {
-    return products(BorrowedColumns(basis_.columns.get()).get(), loads);
+    const BorrowedColumns columns(basis_.columns.get());
+    Matrix result = BorrowedRows(columns.get()).rows().transpose() * BorrowedRows(loads).rows();
+    over_ranks(problem_.comm(), MPI_SUM, result);
+    return result;
   }
   Matrix at_contact() const {
     return restrict_to(problem_.trace(), BorrowedColumns(basis_.columns.get()).get());
@@ -157,14 +150,19 @@ private:
   LinearBasis basis_; ///< orthonormal in A
 };
 
-CertificateReference reference_at(Problem &problem, const Mu &mu, Mat basis, Mat lifting,
-                                  const std::vector<int> &dofs) {
+/// `lifting`: at the first reference, where it is null, it becomes A^-1 B^T of the multipliers
+/// `forces`. Collective.
+CertificateReference reference_at(Problem &problem, const Mu &mu, Mat basis, const Matrix &forces,
+                                  const std::vector<int> &dofs, Handle<Mat> &lifting) {
   const Operators &op = problem.assemble(mu);
   const Scene &scene = problem.scene();
   const std::vector<double> theta = exact_coefficients(
       scene.a, problem.a_terms().split, scene.parameters, expand(scene.parameters, mu));
   Representers representers(problem, op, basis);
-  representers.span_terms(lifting);
+  if (lifting.get() == nullptr)
+    lifting =
+        representers.responses(extension(problem.trace(), op.b.transpose() * forces, op.a).get());
+  representers.span_terms(lifting.get());
   representers.span(extension(problem.trace(), unit_loads(problem.trace().size, dofs), op.a).get());
   const Handle<Mat> loads = loads_of(problem, op.a);
   const bool has_loads = !problem.f_terms().exact.empty();
@@ -172,19 +170,11 @@ CertificateReference reference_at(Problem &problem, const Mu &mu, Mat basis, Mat
   CertificateReference reference;
   reference.theta = Eigen::Map<const Vector>(theta.data(), std::ssize(theta));
   reference.of_basis = representers.of_terms(basis);
-  reference.of_lifting = representers.of_terms(lifting);
+  reference.of_lifting = representers.of_terms(lifting.get());
   reference.of_loads =
       has_loads ? representers.of_loads(loads.get()) : Matrix(reference.of_basis.rows(), 0);
   reference.of_contact = representers.at_contact()(dofs, Eigen::all).transpose();
   return reference;
-}
-
-/// A^-1 B^T of these multipliers at mu. Collective.
-Handle<Mat> lifting_functions(Problem &problem, const Mu &mu, const Matrix &forces) {
-  const Operators &op = problem.assemble(mu);
-  const Handle<KSP> ksp = make_direct_solver(problem.comm(), "hf_");
-  set_operator(ksp.get(), op.a);
-  return solved(ksp.get(), extension(problem.trace(), op.b.transpose() * forces, op.a).get());
 }
 
 } // namespace
@@ -214,12 +204,12 @@ Certificate make_certificate(Problem &problem, const LinearBasis &basis, const R
     return {{}, "multipliers push more than " + std::to_string(most_dofs) + " contact dofs"};
 
   const std::vector<Mu> references = reference_parameters(problem.scene());
-  const Handle<Mat> lifting = lifting_functions(problem, references.front(), rows.forces);
-  certificate.lifting_trace = restrict_to(problem.trace(), lifting.get());
+  Handle<Mat> lifting;
   const BorrowedColumns columns(basis.columns.get());
   for (const Mu &mu : references)
     certificate.references.push_back(
-        reference_at(problem, mu, columns.get(), lifting.get(), certificate.dofs));
+        reference_at(problem, mu, columns.get(), rows.forces, certificate.dofs, lifting));
+  certificate.lifting_trace = restrict_to(problem.trace(), lifting.get());
   return {std::move(certificate), ""};
 }
 

@@ -48,10 +48,6 @@ std::string exact_sum(const char *name, const Sum &sum, const ParameterSpace &sp
          counted(std::ssize(split.exact), "term") + "; ";
 }
 
-bool has_mapped_terms(const Sum &sum) {
-  return std::any_of(sum.begin(), sum.end(), [](const Term &term) { return !term.theta; });
-}
-
 StageRow interpolation_row(const Scene &scene, const ReduceOptions &options,
                            const Reduction *made) {
   const bool apart = !separable_contact(scene), evaluated = apart && has_multipliers(scene);
@@ -157,6 +153,10 @@ std::vector<ReductionStage> first_stages(const Scene &scene, void (*separates)(R
        },
        fewer_samples});
   return list;
+}
+
+bool has_mapped_terms(const Sum &sum) {
+  return std::any_of(sum.begin(), sum.end(), [](const Term &term) { return !term.theta; });
 }
 
 Mu reference_of(const Problem &problem, const ReduceOptions &options) {

@@ -28,6 +28,9 @@ void project_law(Reducing &at);
 void add_bounds(const ReduceOptions &options, std::vector<ReductionStage> &list);
 ReductionStage self_check_stage();
 
+/// Whether some term has no coefficient of its own.
+bool has_mapped_terms(const Sum &sum);
+
 /// The parameter at which A is the product of supremizers, and of the hybrid cone.
 Mu reference_of(const Problem &problem, const ReduceOptions &options);
 

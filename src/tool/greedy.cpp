@@ -51,9 +51,8 @@ GreedyPool greedy_pool(const OfflineOptions &options) {
   if (!none.empty())
     throw bad_input("-greedy chooses samples by bounds of errors, and there are none: " + none);
   if (!options.reduce.certify) throw bad_input("-greedy needs bounds of errors: add -certify");
-  GreedyPool pool{parse_set(options.scene.parameters, options.greedy, false, options.scene.outputs),
-                  options.greedy_tolerance, static_cast<std::size_t>(options.greedy_samples)};
-  return pool;
+  return {parse_set(options.scene.parameters, options.greedy, false, options.scene.outputs),
+          options.greedy_tolerance, static_cast<std::size_t>(options.greedy_samples)};
 }
 
 NextSamples next_samples(MPI_Comm world, const ReducedModel &model, const Scene &scene,

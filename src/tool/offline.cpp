@@ -28,6 +28,7 @@
 #include <iostream>
 #include <optional>
 #include <set>
+#include <utility>
 
 namespace rbvi {
 
@@ -182,26 +183,33 @@ void tell_of_errors(const ReducedModel &model, const std::filesystem::path &run)
       counted(model.scene.parameters.size(), "free parameter").c_str());
 }
 
+/// What -greedy leaves: the largest bound of each model, and what the last one is.
+struct GreedyModels {
+  std::vector<double> bounds;
+  std::optional<Reduction> last;
+};
+
 /// Samples at the training set and, where -greedy asks for it, at those of its pool that bounds of
-/// the errors of models of the samples before choose; `bounds`: the largest of each model.
-/// Collective.
+/// the errors of models of the samples before choose. Collective.
 Sweep chosen_samples(MPI_Comm world, const OfflineOptions &options, const Groups &groups,
                      std::vector<Mu> set, Workspace &work,
                      const std::function<Sweep(const std::vector<Mu> &)> &sweep_at,
-                     std::vector<double> &bounds) {
+                     GreedyModels &models) {
   const GreedyPool pool = greedy_pool(options);
   Sweep sweep = sweep_at(set);
   if (pool.candidates.empty()) return sweep;
   while (true) {
     Problem &problem = work.world_problem();
-    const Reduction made = reduce(problem, sweep.samples, options.reduce);
+    models.last.reset(); // one basis at a time
+    const Reduction &made = models.last.emplace(reduce(problem, sweep.samples, options.reduce));
     if (!made.no_bounds.empty())
       throw failure("-greedy chooses samples by bounds of errors, and there are none: " +
                     made.no_bounds);
     const NextSamples next = next_samples(
         world, made.model, problem.scene(), pool.candidates, set,
         std::min<std::size_t>(groups.count(), pool.most - std::min(pool.most, set.size())));
-    bounds.push_back(next.largest);
+
+    models.bounds.push_back(next.largest);
     if (rank_of(world) == 0)
       std::printf(
           "  %zu samples: largest bound %s%s\n", set.size(), short_number(next.largest).c_str(),
@@ -255,9 +263,11 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const OfflineOption
         world, groups, work.group_problem(), options.hf, set,
         {options.out / "samples", [&] { begin_run(world, options); }, Fields::in_files});
   };
-  std::vector<double> bounds; // of -greedy
+
+  GreedyModels greedy;
+
   Sweep sweep = timed(before, stage::snapshots, [&] {
-    return chosen_samples(world, options, groups, training, work, sweep_at, bounds);
+    return chosen_samples(world, options, groups, training, work, sweep_at, greedy);
   });
   work.end_of_solves();
   const std::size_t solved = sweep.samples.size() + sweep.report.failed.size();
@@ -274,9 +284,10 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const OfflineOption
     model = *std::move(kept);
     compare_balance(problem, model);
   } else {
-    Reduction made = reduce(problem, sweep.samples, options.reduce);
+    Reduction made = greedy.last ? *std::exchange(greedy.last, {})
+                                 : reduce(problem, sweep.samples, options.reduce);
     model = finished_model(made, options, sweep, before);
-    if (!bounds.empty()) model.made.histories["greedy/bound"] = bounds;
+    if (!greedy.bounds.empty()) model.made.histories["greedy/bound"] = greedy.bounds;
     reduction = std::move(made.stages);
     fields = std::move(made.bases.pod.basis);
   }
