@@ -58,6 +58,10 @@ bool separable_contact(const Scene &scene) {
   return std::ranges::all_of(scene.contacts, &ContactRecipe::separable);
 }
 
+bool separable_gap(const Scene &scene) {
+  return separable_contact(scene) && scene.dim == 2;
+}
+
 bool follows_state(const Scene &scene) {
   return std::ranges::any_of(scene.contacts, &ContactRecipe::follows_state);
 }

@@ -321,10 +321,7 @@ private:
 } // namespace
 
 struct FrictionSolver::Parts {
-  Parts(ColumnSource source, const NodeLaws &of)
-      : laws(of), columns(std::move(source)), h(columns, laws.rows) {
-    rbvi::check(laws);
-  }
+  Parts(LazyColumns of, const NodeLaws &by) : laws(by), h(std::move(of)) { rbvi::check(laws); }
   FrictionAnswer run(const Vector &start, bool rule, bool searches) {
     check(q, laws, start);
     if (laws.friction()) return Solver(h, q, laws, options, kept).run(start, rule, searches);
@@ -332,7 +329,6 @@ struct FrictionSolver::Parts {
   }
 
   const NodeLaws laws;
-  const ColumnSource columns;
   LazyColumns h;
   Vector q; ///< of the last answer
   FrictionOptions options;
@@ -349,7 +345,10 @@ struct FrictionSolver::Parts {
 };
 
 FrictionSolver::FrictionSolver(ColumnSource columns, const NodeLaws &laws)
-    : parts_(std::make_unique<Parts>(std::move(columns), laws)) {}
+    : parts_(std::make_unique<Parts>(LazyColumns(std::move(columns), laws.rows), laws)) {}
+
+FrictionSolver::FrictionSolver(const ScaledMatrix &h, const NodeLaws &laws)
+    : parts_(std::make_unique<Parts>(LazyColumns(h), laws)) {}
 
 FrictionSolver::~FrictionSolver() = default;
 

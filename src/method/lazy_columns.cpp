@@ -11,6 +11,15 @@ void LazyColumns::require(const std::vector<Index> &which) {
   for (const Index i : which)
     if (!has(i)) fresh.push_back(i);
   if (fresh.empty()) return;
+  if (source_) receive(fresh);
+  for (const Index i : fresh) {
+    slot_[i] = source_ ? count_ : i;
+    ++count_;
+    diagonal_[i] = column(i)[i];
+  }
+}
+
+void LazyColumns::receive(const std::vector<Index> &fresh) {
   const Matrix received = source_(fresh);
   const Index count = static_cast<Index>(fresh.size());
   if (received.rows() != h_.rows() || received.cols() != count || !received.allFinite())
@@ -20,10 +29,7 @@ void LazyColumns::require(const std::vector<Index> &which) {
     h_.conservativeResize(Eigen::NoChange,
                           std::min(h_.rows(), std::max(count_ + count, 2 * h_.cols())));
   h_.middleCols(count_, count) = received;
-  for (const Index i : fresh) {
-    slot_[i] = count_++;
-    diagonal_[i] = h_(i, slot_[i]);
-  }
+  data_ = h_.data();
 }
 
 Matrix LazyColumns::block(const std::vector<Index> &active) const {
@@ -39,7 +45,7 @@ Matrix LazyColumns::block(const std::vector<Index> &active) const {
 
 std::pair<Vector, Vector> LazyColumns::multiply(const std::vector<Index> &active,
                                                 const Vector &x) const {
-  Vector product = Vector::Zero(h_.rows()), sizes = product;
+  Vector product = Vector::Zero(size()), sizes = product;
   const auto add = [&](auto... k) {
     product += (... + (x[k] * column(active[k])));
     sizes += (... + (std::abs(x[k]) * column(active[k]).cwiseAbs()));

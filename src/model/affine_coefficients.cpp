@@ -108,6 +108,22 @@ void stiffness_of(const ReducedModel &model, const Vector &theta, Matrix &lower)
       change.range * unpacked(change.cores * theta, r) * change.range.transpose();
 }
 
+double energy_product(const ReducedModel &model, const Vector &theta, const Vector &u) {
+  const StiffnessChange &change = model.body.a_change;
+  const bool changes = change.rank() > 0;
+  const Vector factors = changes ? Vector::Constant(1, change.scales.dot(theta)) : theta;
+  const Index n = u.size();
+  double sum = 0;
+  for (Index q = 0; q < factors.size(); ++q)
+    for (Index j = 0, at = 0; j < n; at += n - j, ++j) {
+      const auto column = model.body.a.reduced.col(q).segment(at, n - j);
+      sum += factors[q] * u[j] * (2 * column.dot(u.tail(n - j)) - column[0] * u[j]);
+    }
+  if (!changes) return sum;
+  const Vector moved = change.range.transpose() * u;
+  return sum + moved.dot(unpacked(change.cores * theta, change.rank()) * moved);
+}
+
 void check_terms_of(const AffineTerms &terms, const Sum &sum, const ParameterSpace &space,
                     const std::string &name) {
   const SplitSum split = split_sum(sum, space);

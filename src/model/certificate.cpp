@@ -29,7 +29,7 @@ struct Gaps {
 Gaps gaps_of(const ReducedModel &model, const Contact &contact, const ReducedAnswer &answer) {
   constexpr double units = 64 * std::numeric_limits<double>::epsilon();
   Gaps gaps;
-  if (model.evaluates_contact())
+  if (model.evaluates_gap())
     gaps.at_mu = answer.contact;
   else
     assemble(contact, answer.mu, {}, gaps.at_mu);
@@ -83,9 +83,18 @@ Norms residual_norms(const CertificateModel &certificate, const Vector &theta_a,
           norm_over_references(references, theta_a, plus)};
 }
 
-/// Whether a bound of friction is known before the answer is.
-bool is_given(const FrictionBound &bound) {
-  return !(bound.acts() && bound.follows_pressure());
+/// Whether the bounds of friction are known before the answer is.
+bool are_given(const NodeLaws &laws) {
+  for (Index node = 0; node < laws.nodes(); ++node)
+    if (const FrictionBound &bound = laws.bound[node];
+        laws.has_tangent(node) && bound.acts() && bound.follows_pressure())
+      return false;
+  return true;
+}
+
+/// The load's coefficients at mu; empty: there is none.
+Vector load_coefficients(const ReducedModel &model, const Scene &scene, const FullMu &mu) {
+  return model.body.f.size() > 0 ? affine_coefficients(model.body.f, scene.f, scene, mu) : Vector();
 }
 
 } // namespace
@@ -120,26 +129,46 @@ std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scen
   z(lifting->functions) += lifting->weights;
 
   const Vector theta_a = affine_coefficients(model.body.a, scene.a, scene, answer.mu);
-  Vector theta_f;
-  if (model.body.f.size() > 0)
-    theta_f = affine_coefficients(model.body.f, scene.f, scene, answer.mu);
+  const Vector theta_f = load_coefficients(model, scene, answer.mu);
   const Norms norms = residual_norms(certificate, theta_a, theta_f, known, answer.u, z);
   double slack = x(laws.normal).dot(lifting->left);
   if (laws.has_tangents()) slack += friction_slack(laws, x, gaps.left - b * Vector(functions * z));
   const ErrorBound bound = error_bound(norms.minus, norms.plus, slack);
   if (!std::isfinite(bound.u)) return std::nullopt; // A is no sum of those at the references
 
-  Matrix a;
-  stiffness_of(model, theta_a, a);
-  const double size = std::sqrt(answer.u.dot(a.selfadjointView<Eigen::Lower>() * answer.u));
-  bool certified = true;
-  for (Index node = 0; node < laws.nodes(); ++node)
-    certified = certified && (!laws.has_tangent(node) || is_given(laws.bound[node]));
-  return AnswerBound{std::max(bound.u, bound.multiplier), size, certified};
+  return AnswerBound{std::max(bound.u, bound.multiplier),
+                     std::sqrt(energy_product(model, theta_a, answer.u)), are_given(laws)};
+}
+
+/// With u_x the body's displacement under f and l_N, z = u_N - u_x and v = u_x, r + A z = 0 but for
+/// what the basis leaves of A^-1 f.
+AnswerBound bound_by_law(const ReducedModel &model, const Scene &scene, const NodeLaws &laws,
+                         const ReducedAnswer &answer, double imposed_energy) {
+  constexpr double units = 16 * std::numeric_limits<double>::epsilon();
+  const Vector theta_f = load_coefficients(model, scene, answer.mu);
+  const double square =
+      energy_product(model, affine_coefficients(model.body.a, scene.a, scene, answer.mu), answer.u);
+  double work = 0, outside = 0; // of the load
+  if (theta_f.size() > 0) {
+    work = answer.u.dot(model.body.f.reduced * theta_f);
+    outside = (model.certificate.left_of_loads * theta_f).norm() /
+              std::sqrt(common_coefficient(scene.a, scene.parameters, answer.mu));
+  }
+  const double of_law = answer.energy - imposed_energy;
+  const double apart = std::max(0.0, 2 * of_law - (square - 2 * work)) +
+                       units * (std::abs(of_law) + square + std::abs(work));
+  double slack = 0;
+  const Vector &x = answer.lambda, &w = answer.left;
+  for (const Index row : laws.normal)
+    slack += x[row] * std::max(0.0, w[row]);
+  if (laws.has_tangents()) slack += friction_slack(laws, x, -w);
+  const ErrorBound bound = error_bound(outside + 2 * std::sqrt(apart), outside, slack);
+  return {std::max(bound.u, bound.multiplier), std::sqrt(square), are_given(laws)};
 }
 
 CertificateModel rebased(CertificateModel certificate, const Matrix &c) {
   const Index n = c.rows(), k = c.cols();
+  if (k < n) certificate.by_law = false;
   for (CertificateReference &reference : certificate.references) {
     Matrix turned(reference.of_basis.rows(), reference.theta.size() * k);
     for (Index q = 0; q < reference.theta.size(); ++q)

@@ -10,6 +10,9 @@ template <class Store, class Model> void list_certificate(const Store &store, Mo
   auto &certificate = model.certificate;
   const Index contact = model.contact.interfaces.empty() ? 0 : model.contact_dofs(),
               terms = model.body.a.size();
+  list_integer(store, "certificate/by_law", certificate.by_law);
+  store("certificate/left_of_loads", certificate.left_of_loads,
+        Shape{any_size, certificate.by_law ? model.body.f.size() : any_size});
   store("certificate/dofs", certificate.dofs, Indices{contact});
   store("certificate/lifting_trace", certificate.lifting_trace);
   const Index lifting = certificate.lifting_trace.cols();

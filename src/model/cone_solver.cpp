@@ -42,13 +42,14 @@ ConeSolver::ConeSolver(const ReducedModel &model, const Scene &scene, const Cont
   dual_rows_ = end - first_dual_;
 }
 
-void ConeSolver::evaluate_contact(const Vector &state, ReducedAnswer &answer) {
+void ConeSolver::evaluate(const Vector &state, ReducedAnswer &answer) {
   ContactOperators &op = answer.contact;
   assemble(contact_, answer.mu, {state}, op);
   const auto basis = model_.contact.dual_basis.middleRows(first_dual_, dual_rows_).transpose();
+  g_.noalias() = basis * op.g.segment(first_dual_, dual_rows_);
+  if (!model_.evaluates_contact()) return;
   const Matrix traces = op.b.middleRows(first_dual_, dual_rows_) * model_.contact.trace;
   b_.noalias() = basis * traces;
-  g_.noalias() = basis * op.g.segment(first_dual_, dual_rows_);
   turned_b_ = body_.turned(b_.transpose());
   root_of_y_ = 0;
 }
@@ -92,16 +93,16 @@ void ConeSolver::solve_dual(ReducedAnswer &answer) {
 
 void ConeSolver::solve_pair(const Vector &state, ReducedAnswer &answer) {
   at_mu_.set(answer.mu, beta_);
-  if (model_.evaluates_contact())
-    evaluate_contact(state, answer);
+  if (model_.evaluates_gap())
+    evaluate(state, answer);
   else
+    g_.noalias() = model_.contact.g.reduced *
+                   contact_coefficients(model_.contact.g, Part::g, contact_, scene_, answer.mu);
+  if (!model_.evaluates_contact())
     set_b(answer.theta_b =
               contact_coefficients(model_.contact.b, Part::b, contact_, scene_, answer.mu));
   set_y();
   f_ = at_mu_.load();
-  if (model_.contact.g.size() > 0)
-    g_.noalias() = model_.contact.g.reduced *
-                   contact_coefficients(model_.contact.g, Part::g, contact_, scene_, answer.mu);
   solve_dual(answer);
 }
 

@@ -58,14 +58,17 @@ void LawProblem::set(const FullMu &mu, const Vector &state, ReducedAnswer &answe
                                          model_.body.modes));
   if (at_mu_.has_load()) {
     law_.load = at_mu_.half_response_to_load();
-    law_.unloaded = at_mu_.transposed_half_response(law_.load);
-    law_.q -= contact_->times(law_.unloaded);
+    law_.unloaded = at_mu_.response_to_load();
+    law_.q -= contact_->times_response_to_load(at_mu_, law_.unloaded);
   }
   friction_.reset();
 }
 
 FrictionSolver &LawProblem::friction() {
-  if (!friction_)
+  if (friction_) return *friction_;
+  if (const std::optional<ScaledMatrix> h = contact_->condensed())
+    friction_ = std::make_unique<FrictionSolver>(*h, law_.laws);
+  else
     friction_ = std::make_unique<FrictionSolver>(
         [this](const std::vector<Index> &which) { return contact_->condensed_columns(which); },
         law_.laws);

@@ -184,6 +184,7 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOp
     return;
   }
   trace_.emplace(model, contact_);
+  if (model.certificate.by_law) column_laws_ = laws_of_columns(contact_, model.contact.dual_basis);
   if (model.contact.law)
     method_ = law_solver(model, scene_, contact_, options);
   else
@@ -210,10 +211,14 @@ ReducedAnswer OnlineSolver::near(const ReducedAnswer &from, const Mu &mu) {
 }
 
 ReducedAnswer OnlineSolver::with_imposed_energy(ReducedAnswer answer) const {
-  if (const AffineTerms &imposed = model_.body.imposed_energy; imposed.size() > 0)
-    answer.energy += imposed.reduced.row(0).dot(
-        affine_coefficients(imposed, imposed_energy_, scene_, answer.mu));
+  answer.energy += imposed_energy_at(answer.mu);
   return answer;
+}
+
+double OnlineSolver::imposed_energy_at(const FullMu &mu) const {
+  const AffineTerms &imposed = model_.body.imposed_energy;
+  if (imposed.size() == 0) return 0;
+  return imposed.reduced.row(0).dot(affine_coefficients(imposed, imposed_energy_, scene_, mu));
 }
 
 Vector OnlineSolver::multiplier(const ReducedAnswer &solution) const {
@@ -223,7 +228,7 @@ Vector OnlineSolver::multiplier(const ReducedAnswer &solution) const {
 
 ContactOperators OnlineSolver::nodal_operators(const ReducedAnswer &solution,
                                                const Vector &lambda) const {
-  if (model_.evaluates_contact()) return solution.contact;
+  if (model_.evaluates_gap()) return solution.contact;
   ContactOperators operators;
   assemble_nodal(contact_, solution.mu, {}, lambda, operators);
   return operators;
@@ -286,8 +291,11 @@ void OnlineSolver::add_bound(const ReducedAnswer &solution, const Vector &lambda
   const bool asked =
       std::ranges::any_of(std::array{"error_bound", "error_indicator", "energy_norm"},
                           [&](const char *name) { return is_asked(only_, name); });
-  if (model_.certificate.references.empty() || !asked) return;
-  const std::optional<AnswerBound> bound = bound_of(model_, scene_, contact_, solution, lambda);
+  if (!model_.certificate.exists() || !asked) return;
+  const std::optional<AnswerBound> bound =
+      column_laws_ ? bound_by_law(model_, scene_, laws_at(*column_laws_, contact_, solution.mu),
+                                  solution, imposed_energy_at(solution.mu))
+                   : bound_of(model_, scene_, contact_, solution, lambda);
   if (!bound) return;
   const double size = std::max(bound->size, std::numeric_limits<double>::min());
   (bound->certified ? outputs.error_bound : outputs.error_indicator) = bound->error / size;

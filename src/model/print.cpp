@@ -147,7 +147,11 @@ void print_model(std::ostream &out, const ReducedModel &model) {
       print_terms_of_rows(out, model.contact.b.size(), model.contact.law->apart);
     else
       print_terms(out, "b", model.contact.b);
-    print_terms(out, "g", model.contact.g);
+    if (model.evaluates_gap())
+      label(out, "g") << "assembled for each mu on " << nodes_of_interfaces(model)
+                      << " contact nodes\n";
+    else
+      print_terms(out, "g", model.contact.g);
   }
   label(out, "multipliers") << model.contact.dual_basis.rows() << '\n';
   label(out, "mesh") << model.made.mesh_fingerprint << '\n';

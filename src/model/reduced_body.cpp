@@ -40,12 +40,13 @@ ReducedBody::ReducedBody(const ReducedModel &model, const Scene &scene)
     find_change();
   else if (model.body.a.size() <= 2 && !model.body.online_enriched)
     find_common_eigenvectors();
-  turned_b_.resize(model.primal_size(), model.contact.generators * model.contact.b.size());
+  prepared_b_.resize(model.primal_size(), model.contact.generators * model.contact.b.size());
   for (Index p = 0; p < model.contact.b.size(); ++p)
-    turned_b_.middleCols(p * model.contact.generators, model.contact.generators) =
-        turned(model.contact.b.reduced.col(p)
-                   .reshaped(model.contact.generators, model.primal_size())
-                   .transpose());
+    prepared_b_.middleCols(p * model.contact.generators, model.contact.generators) =
+        prepared(model.contact.b.reduced.col(p)
+                     .reshaped(model.contact.generators, model.primal_size())
+                     .transpose());
+  if (only_scales()) unit_responses_ = prepared(model.body.f.reduced);
   turned_f_ = turned(model.body.f.reduced);
   turned_springs_ = turned(model.body.springs);
 }
@@ -94,7 +95,7 @@ Matrix ReducedBody::turned(const Matrix &loads) const {
 }
 
 Matrix ReducedBody::prepared(const Matrix &loads) const {
-  if (!only_scales()) return turned(loads);
+  if (!only_scales() || loads.size() == 0) return turned(loads);
   return eigenvectors_ * (eigenvalues_.cwiseInverse().asDiagonal() * turned(loads));
 }
 
@@ -232,6 +233,18 @@ Vector BodyAtMu::half_response_to_load() const {
   return half_response_of_turned(turned);
 }
 
+Vector BodyAtMu::response_to_load() const {
+  const Vector shares = load_shares();
+  if (shares.size() > 0) return body_.unit_responses_ * shares;
+  return transposed_half_response(half_response_to_load());
+}
+
+Vector BodyAtMu::load_shares() const {
+  const AffineTerms &f = body_.model_.body.f;
+  if (!body_.only_scales() || !has_load() || beta_.size() > 0) return {};
+  return affine_coefficients(f, body_.scene_.f, body_.scene_, mu_) / theta_[0];
+}
+
 Matrix BodyAtMu::half_response_to_springs() const {
   return half_response_of_turned(body_.turned_springs_);
 }
@@ -259,10 +272,11 @@ Vector BodyAtMu::response(const Vector &load) const {
 }
 
 Vector BodyAtMu::response(const Vector &theta_b, const Vector &x) const {
-  Vector load = Vector::Zero(body_.turned_b_.rows());
+  Vector load = Vector::Zero(body_.prepared_b_.rows());
   for (Index p = 0; p < theta_b.size(); ++p)
-    load.noalias() += theta_b[p] * (body_.turned_b_.middleCols(p * x.size(), x.size()) * x);
-  return transposed_half_response(half_response_of_turned(load));
+    for (Index j = 0; j < x.size(); ++j)
+      if (x[j] != 0) load += theta_b[p] * x[j] * body_.prepared_b_.col(p * x.size() + j);
+  return response_of_prepared(load);
 }
 
 } // namespace rbvi

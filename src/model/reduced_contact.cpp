@@ -28,15 +28,24 @@ Matrix columns_of_sum(const Matrix &terms, const Vector &coefficients,
   return result;
 }
 
+/// The dual basis transposed.
+SparseMatrix rows_of(const ReducedModel &model) {
+  return Matrix(model.contact.dual_basis.transpose()).sparseView();
+}
+
 class SeparatedContact : public ReducedContact {
 public:
-  SeparatedContact(const ReducedModel &model, const Scene &scene, const Contact &contact)
-      : model_(model), scene_(scene), contact_(contact) {}
+  SeparatedContact(const ReducedModel &model, const Scene &scene, const Contact &contact,
+                   const ReducedBody &body)
+      : model_(model), scene_(scene), contact_(contact), rows_(rows_of(model)) {
+    if (body.unit_responses().size() == 0) return;
+    for (Index p = 0; p < model.contact.b.size(); ++p)
+      of_unit_responses_.push_back(term(p) * body.unit_responses());
+  }
 
   void set(const FullMu &mu, const Vector &, ReducedAnswer &answer) override {
     theta_ = contact_coefficients(model_.contact.b, Part::b, contact_, scene_, mu);
-    g_ = model_.contact.g.reduced *
-         contact_coefficients(model_.contact.g, Part::g, contact_, scene_, mu);
+    set_gap(mu, answer);
     answer.theta_b = theta_;
     const CondensedOperator &condensed = model_.contact.law->condensed;
     coefficients_.resize(condensed.terms.cols());
@@ -53,6 +62,29 @@ public:
         .reshaped(model_.contact.generators, model_.primal_size());
   }
 
+  Matrix times(const Matrix &u) const override {
+    Matrix result = Matrix::Zero(model_.contact.generators, u.cols());
+    for (Index p = 0; p < theta_.size(); ++p)
+      result.noalias() += theta_[p] * (term(p) * u);
+    return result;
+  }
+
+  Vector times_response_to_load(const BodyAtMu &body, const Vector &u) const override {
+    const Vector shares = body.load_shares();
+    if (shares.size() == 0) return times(u);
+    Vector result = Vector::Zero(model_.contact.generators);
+    for (Index p = 0; p < theta_.size(); ++p)
+      result.noalias() += theta_[p] * (of_unit_responses_[p] * shares);
+    return result;
+  }
+
+  std::optional<ScaledMatrix> condensed() const override {
+    const Matrix &terms = model_.contact.law->condensed.terms;
+    const Index m = model_.contact.generators;
+    if (terms.cols() != 1) return {};
+    return ScaledMatrix{{terms.data(), m, m}, coefficients_[0]};
+  }
+
   Matrix condensed_columns(const std::vector<Index> &which) override {
     return columns_of_sum(model_.contact.law->condensed.terms, coefficients_, which);
   }
@@ -62,9 +94,26 @@ public:
   }
 
 private:
+  /// Term p of B, m x n.
+  Eigen::Map<const Matrix> term(Index p) const {
+    return {model_.contact.b.reduced.col(p).data(), model_.contact.generators,
+            model_.primal_size()};
+  }
+  void set_gap(const FullMu &mu, ReducedAnswer &answer) {
+    if (model_.evaluates_gap()) {
+      assemble(contact_, mu, {}, answer.contact);
+      g_ = rows_ * answer.contact.g;
+    } else {
+      g_ = model_.contact.g.reduced *
+           contact_coefficients(model_.contact.g, Part::g, contact_, scene_, mu);
+    }
+  }
+
   const ReducedModel &model_;
   const Scene &scene_;
   const Contact &contact_;
+  const SparseMatrix rows_;
+  std::vector<Matrix> of_unit_responses_; ///< B_p ReducedBody::unit_responses(), where there are
   Vector theta_, coefficients_;
 };
 
@@ -113,8 +162,7 @@ private:
 
 EvaluatedContact::EvaluatedContact(const ReducedModel &model, const Scene &scene,
                                    const Contact &contact, const ReducedBody &body)
-    : model_(model), scene_(scene), contact_(contact),
-      rows_(Matrix(model.contact.dual_basis.transpose()).sparseView()),
+    : model_(model), scene_(scene), contact_(contact), rows_(rows_of(model)),
       place_(model.contact.trace.rows(), -1) {
   const std::vector<int> &dofs = model.contact.law->condensed.dofs;
   trace_ = dofs.empty() ? model.contact.trace : Matrix(model.contact.trace(dofs, Eigen::all));
@@ -187,7 +235,7 @@ std::unique_ptr<ReducedContact> reduced_contact(const ReducedModel &model, const
                                                 const Contact &contact, const ReducedBody &body) {
   if (model.evaluates_contact())
     return std::make_unique<EvaluatedContact>(model, scene, contact, body);
-  return std::make_unique<SeparatedContact>(model, scene, contact);
+  return std::make_unique<SeparatedContact>(model, scene, contact, body);
 }
 
 } // namespace rbvi

@@ -303,7 +303,7 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
   std::vector<int> all(training.size()), none;
   std::iota(all.begin(), all.end(), 0);
   const Scene &scene = problem.scene();
-  const bool without_b = !separable_contact(scene);
+  const bool without_b = !separable_contact(scene), without_g = !separable_gap(scene);
   const Summed<Mat> &a_terms = problem.a_terms();
   const Summed<Vec> &f_terms = problem.f_terms();
   const Operators &op = problem.assemble(training.front());
@@ -315,7 +315,7 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
     g_keys.push_back({i, 0});
   Snapshots a(triangle.keys(), interpolated_samples(scene.a, scene.parameters, training));
   Snapshots f(f_keys, interpolated_samples(scene.f, scene.parameters, training)),
-      b(nonzero_keys(op.b), without_b ? none : all), g(g_keys, without_b ? none : all);
+      b(nonzero_keys(op.b), without_b ? none : all), g(g_keys, without_g ? none : all);
   for (const int number : all) {
     const auto p = static_cast<std::size_t>(number);
     if (without_b && !a.has(p) && !f.has(p)) continue;
@@ -336,6 +336,7 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
       sample_domain(problem, scene.f, f_terms.split.mapped, result.f.entries, false)};
   if (without_b) return result;
   result.sample_b = sample_contact(problem.contact(), entries_of_b(result), true);
+  if (without_g) return result;
   result.sample_g = sample_contact(problem.contact(), result.g.entries, false);
   return result;
 }

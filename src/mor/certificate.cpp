@@ -177,6 +177,35 @@ CertificateReference reference_at(Problem &problem, const Mu &mu, Mat basis, con
   return reference;
 }
 
+/// Whether CertificateModel::by_law holds.
+bool is_told_by_law(const Problem &problem, const ReducedModel &model) {
+  const ContactModel &contact = model.contact;
+  return contact.law && !contact.law->on_functions() && contact.law->condensed.axes.empty() &&
+         contact.b.size() == 1 && model.body.a_change.rank() == 0 &&
+         model.body.a.size() == model.body.a.exact &&
+         parameters_beside_common(problem.scene().a, problem.scene().parameters).empty() &&
+         contact.dual_basis.rowwise().lpNorm<Eigen::Infinity>().minCoeff() > 0;
+}
+
+/// CertificateModel::left_of_loads. Collective.
+Matrix left_of_loads(Problem &problem, const Mu &mu, const LinearBasis &basis) {
+  if (problem.f_terms().exact.empty()) return Matrix(0, 0);
+  const Operators &op = problem.assemble(mu);
+  const Handle<KSP> ksp = make_direct_solver(problem.comm(), "hf_");
+  set_operator(ksp.get(), op.a);
+  Handle<Mat> left = solved(ksp.get(), loads_of(problem, op.a).get());
+  const BorrowedColumns columns(basis.columns.get());
+  const Matrix stiffness = projected(columns.get(), op.a, columns.get());
+  for (int pass = 0; pass < 2; ++pass) { // of small differences the first leaves round-off
+    const Matrix known = lu_solve(stiffness, projected(columns.get(), op.a, left.get()));
+    left = dense_like(op.a,
+                      BorrowedRows(left.get()).rows() - BorrowedRows(columns.get()).rows() * known);
+  }
+  const EigenPairs pairs = eigen_pairs(projected(left.get(), op.a, left.get()));
+  const double common = common_coefficient(problem.scene().a, problem.scene().parameters, op.mu);
+  return (common * pairs.values).cwiseMax(0).cwiseSqrt().asDiagonal() * pairs.vectors.transpose();
+}
+
 } // namespace
 
 std::string no_certificate(const Scene &of) {
@@ -197,6 +226,12 @@ Certificate make_certificate(Problem &problem, const LinearBasis &basis, const R
   if (!model.contact.trace_dofs.empty())
     return {{}, "the model knows displacements near contact alone"};
   CertificateModel certificate;
+  if (is_told_by_law(problem, model)) {
+    certificate.by_law = true;
+    certificate.left_of_loads =
+        left_of_loads(problem, box_centre(problem.scene().parameters), basis);
+    return {std::move(certificate), ""};
+  }
   LiftedRows rows = lifted_rows(problem.contact(), model);
   certificate.own = std::move(rows.own);
   certificate.dofs = pushed_dofs(problem, model, training);

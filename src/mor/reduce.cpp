@@ -50,9 +50,12 @@ std::string exact_sum(const char *name, const Sum &sum, const ParameterSpace &sp
 
 StageRow interpolation_row(const Scene &scene, const ReduceOptions &options,
                            const Reduction *made) {
-  const bool apart = !separable_contact(scene), evaluated = apart && has_multipliers(scene);
+  const bool apart = !separable_contact(scene), multipliers = has_multipliers(scene);
   const bool a = has_mapped_terms(scene.a), f = has_mapped_terms(scene.f);
-  const std::string assembled = evaluated ? "; B, G are assembled exactly online" : "";
+  const std::string assembled = !multipliers            ? ""
+                                : apart                 ? "; B, G are assembled exactly online"
+                                : !separable_gap(scene) ? "; G is assembled exactly online"
+                                                        : "";
   const std::string exact =
       exact_sum("A", scene.a, scene.parameters) + exact_sum("F", scene.f, scene.parameters);
   if (!a && !f && apart)
@@ -68,7 +71,7 @@ StageRow interpolation_row(const Scene &scene, const ReduceOptions &options,
   if (a) add("A", &AffineOperators::a);
   if (!apart) names.push_back(made == nullptr ? "B" : terms_of_b(made->affine));
   if (f) add("F", &AffineOperators::f);
-  if (!apart) add("G", &AffineOperators::g);
+  if (separable_gap(scene)) add("G", &AffineOperators::g);
   const std::string tolerance = interpolation_tolerance(options);
   return {stage::interpolation,
           exact + (made == nullptr ? "" : "terms: ") + joined(names) +
@@ -189,6 +192,9 @@ StageRow bounds_row(const Scene &scene, const ReduceOptions &, const Reduction *
     return {stage::bounds, "none: " + none, skipped};
   if (made == nullptr) return {stage::bounds, "norms of the residual at reference parameters"};
   if (!made->no_bounds.empty()) return {stage::bounds, "none: " + made->no_bounds};
+  if (made->model.certificate.by_law)
+    return {stage::bounds,
+            "energies of the law and of the displacement: nothing is stored for them"};
   const std::vector<CertificateReference> &references = made->model.certificate.references;
   double numbers = static_cast<double>(made->model.certificate.lifting_trace.size());
   for (const CertificateReference &at : references)

@@ -36,7 +36,7 @@ Effectivities effectivities(Problem &problem, const ReducedModel &model,
                             const std::vector<Sample> &samples) {
   constexpr double of_solver = 1e-8;
   Effectivities found;
-  if (model.certificate.references.empty()) return found;
+  if (!model.certificate.exists()) return found;
   OnlineSolver solver(model, {.only = {"error_bound", "error_indicator", "energy_norm"}});
   for (const Sample &sample : samples) {
     Outputs outputs;

@@ -3,7 +3,7 @@
 
 A coarse half-ball with friction and four free parameters: the model answers at points that it has not
 seen as full solves do, forces and all; two ranks make the same one; the files for ParaView have the
-fields of bodies and surfaces in space. The case that rbvi new writes of a geometry has no defect.
+fields of bodies and surfaces in space. Bounds and indicators are the errors of a model of few functions. The case that rbvi new writes of a geometry has no defect.
 """
 
 import subprocess
@@ -16,6 +16,7 @@ CASE = ["-case", CASES / "rigid_ball/case.yaml", "-set", "mesh.set.size=2"]
 FREE = ["-parameters", "radius,indentation,offset_x,shear"]
 UNSEEN = ("0.83,0.07,-0.04,0.02", "1.21,0.045,0.08,0.005")
 ACCURATE = 1e-6  # of each output; measured at 5 random points: 2e-7 at most
+SHARP = 1.5  # of a bound over the error; 1 but for what the law leaves
 
 
 def called(*command):
@@ -48,12 +49,29 @@ def compare(one, other, tolerance, what):
             sys.exit(f"{what}: {name} is {other[name]}, not {value}")
 
 
+def bounds(tool, out, kind):
+    """verify fails where a bound is below the error; what it says is sharp."""
+    said = called(tool, "verify", "-out", out)
+    for line in said.splitlines():
+        if line.startswith(f"{kind} of u: "):
+            least, largest = (float(word) for word in (line.split()[3], line.split()[5]))
+            if not 1 - 1e-3 <= least <= largest <= SHARP:
+                sys.exit(f"{out.name}: {line}")
+            return
+    sys.exit(f"{out.name}: no {kind} of u in\n{said}")
+
+
 def main(programs, out):
     tool, online = programs / "rbvi", programs / "rbvi-online"
     for ranks in (1, 2):
         called("mpirun", "-n", ranks, tool, "offline", *CASE, *FREE, "-train", "random:60:1", "-valid",
                "random:2:2", "-out", out / f"np{ranks}")
     called(tool, "verify", "-out", out / "np2")
+    for friction, kind in ((0, "Bounds"), (0.2, "Indicators")): # of modes alone, 3e-2 to 3e-1 off
+        run = out / f"modes_{friction}"
+        called(tool, "offline", *CASE, *FREE, "-friction", friction, "-train", "random:8:1", "-valid", "random:2:2",
+               "-response_tolerance", "0", "-certify", "-out", run)
+        bounds(tool, run, kind)
     for mu in UNSEEN:
         full = numbers(called(tool, "solve", *CASE, *FREE, "-mu", mu))
         one, two = (numbers(called(online, out / f"np{ranks}/model.h5", "--mu", mu)) for ranks in (1, 2))

@@ -254,6 +254,8 @@ bool has_friction(const Scene &scene);
 /// Otherwise Nitsche's method does.
 bool has_multipliers(const Scene &scene);
 bool separable_contact(const Scene &scene);
+/// Whether G is a sum of few terms beside B. On surfaces it takes many, and is assembled for each mu.
+bool separable_gap(const Scene &scene);
 /// Whether some interface follows the state.
 bool follows_state(const Scene &scene);
 bool keeps_nodes(const Scene &scene);

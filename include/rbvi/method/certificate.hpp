@@ -10,7 +10,7 @@
 //   |u - u_N| <= |r - A z| / 2 + Rad,   |u - v|, |B^T (l - l_N)| <= |r + A z| / 2 + Rad,
 //   Rad^2 = |r + A z|^2 / 4 + slack,    J(v) - gap <= J(u) <= J(v),   gap = |r + A z|^2 / 2 + slack
 //
-// where l_N is one that the law allows and J is the energy with k |v_t|. cases/CERTIFICATES.md
+// where l_N is one that the law allows and J is the energy with k |v_t|. cases/BOUNDS.md
 // proves it.
 #pragma once
 

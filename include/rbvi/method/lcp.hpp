@@ -20,6 +20,12 @@ namespace rbvi {
 /// Returns the columns H(:, which) as an n x which.size() matrix; each column is asked for once.
 using ColumnSource = std::function<Matrix(const std::vector<Index> &which)>;
 
+/// H where all of it is there: `factor` times a square matrix, which outlives its use.
+struct ScaledMatrix {
+  Eigen::Map<const Matrix> matrix;
+  double factor;
+};
+
 struct LcpOptions {
   double tolerance = 1e-13; ///< relative: w to the terms of its row, x (unit diag. H) to its max
   int max_iterations = 0;   ///< 0: 50 + 10 n

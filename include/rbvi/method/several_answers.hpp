@@ -46,6 +46,7 @@ class FrictionSolver {
 public:
   /// Throws as solve_friction where the laws make no sense.
   FrictionSolver(ColumnSource columns, const NodeLaws &laws);
+  FrictionSolver(const ScaledMatrix &h, const NodeLaws &laws);
   ~FrictionSolver();
   FrictionSolver(const FrictionSolver &) = delete;
   /// As friction_answer.

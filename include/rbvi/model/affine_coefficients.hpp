@@ -19,6 +19,9 @@ Vector contact_coefficients(const AffineTerms &terms, Part part, const Contact &
 /// The lower triangle of A_N with these coefficients of its terms, n x n.
 void stiffness_of(const ReducedModel &model, const Vector &theta, Matrix &lower);
 
+/// u^T A_N u with these coefficients of its terms.
+double energy_product(const ReducedModel &model, const Vector &theta, const Vector &u);
+
 /// Throws bad_input, with the name of the operator, unless the terms are those of the sum.
 void check_terms_of(const AffineTerms &terms, const Sum &sum, const ParameterSpace &space,
                     const std::string &name);

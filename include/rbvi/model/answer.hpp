@@ -17,7 +17,7 @@ namespace rbvi {
 struct ReducedAnswer : Answer {
   FullMu mu;
   Vector theta_b;           ///< coefficients of b at this mu, where it separates
-  ContactOperators contact; ///< at this mu, where they do not separate
+  ContactOperators contact; ///< at this mu, where B or G is evaluated
   Vector reaction;          ///< with them, of the law at nodes: B^T x on CondensedOperator::dofs
   Vector left{};     ///< of the law at all nodes: H x + q, of which displace() makes the residual
   double energy = 0; ///< a(u,u)/2 - f(u), of the domain alone (not its mirror images)

@@ -2,6 +2,11 @@
 // g are those of mu on the interfaces, at every node, and l_N is made one that the law allows
 // first, so that no approximation of the model enters. A is a sum of exact terms; the norm of a
 // residual follows from those at a few reference parameters (norm_over_references).
+//
+// Where the law is that of the whole body at all nodes (CertificateModel::by_law), l_N is its
+// multiplier, and what u_N lacks of the body's answer to f and l_N tells the difference of the
+// energies of both: no residual is formed, and no gap is lifted. Being a difference, such a bound
+// ends at 1e-8 of |u_N|.
 #pragma once
 
 #include "rbvi/contact/contact.hpp"
@@ -27,6 +32,11 @@ struct AnswerBound {
 std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scene,
                                     const Contact &contact, const ReducedAnswer &answer,
                                     const Vector &lambda);
+
+/// Of CertificateModel::by_law. `laws`: of the columns of the dual basis at mu; `imposed_energy`:
+/// what of the answer's energy is that of imposed values alone.
+AnswerBound bound_by_law(const ReducedModel &model, const Scene &scene, const NodeLaws &laws,
+                         const ReducedAnswer &answer, double imposed_energy);
 
 /// The same on the functions V C of the model's basis V, C n x k.
 CertificateModel rebased(CertificateModel certificate, const Matrix &c);

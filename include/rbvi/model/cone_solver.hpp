@@ -44,7 +44,8 @@ private:
   void solve_pair(const Vector &state, ReducedAnswer &answer);
   /// Kacanov's iteration with the pair, accelerated but for OnlineMethod::kacanov.
   void solve_following(ReducedAnswer &answer);
-  void evaluate_contact(const Vector &state, ReducedAnswer &answer);
+  /// Sets G, and B where that is evaluated too.
+  void evaluate(const Vector &state, ReducedAnswer &answer);
   void set_b(const Vector &theta_b);
   void set_y();
   void solve_dual(ReducedAnswer &answer);

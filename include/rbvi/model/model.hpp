@@ -194,7 +194,7 @@ struct ContactModel {
   int generators = 0; ///< R
   int free_modes = 0; ///< the last of the R: their coefficients take either sign
   AffineTerms b;      ///< reduced: R x n, column-major, R n x J; of a support see TermsApart
-  AffineTerms g;      ///< R x J
+  AffineTerms g;      ///< R x J; none: ReducedModel::evaluates_gap
   std::vector<InterfaceModel> interfaces;
   Matrix dual_basis; ///< dual dofs x R; entries >= 0 but for hybrid cones
   /// The primal basis at the contact dofs, k x n. In a large pair of spaces at `trace_dofs` alone,
@@ -237,12 +237,19 @@ struct CertificateReference {
   Matrix of_contact; ///< rank x dofs: a unit force at each of CertificateModel::dofs
 };
 
-/// What bounds of errors are made of (model/certificate.hpp); without references there are none.
+/// What bounds of errors are made of (model/certificate.hpp); without references there are none,
+/// unless the law tells them.
 struct CertificateModel {
+  /// Multipliers are those of the whole body, as mu only scales A, the condensed operator is exact
+  /// and known at every node. Nothing more is needed than what the basis leaves of A_1^-1 F, in
+  /// coordinates that are orthonormal in A_1 (A = common coefficient times A_1): any x terms of F.
+  bool by_law = false;
+  Matrix left_of_loads;
   std::vector<CertificateReference> references;
   std::vector<int> dofs; ///< contact dofs that multipliers push, rising
   std::vector<int> own;  ///< of each dual dof the function that lifts its gap, -1: none does
   Matrix lifting_trace;  ///< contact dofs x m: the lifting functions
+  bool exists() const { return by_law || !references.empty(); }
 };
 
 /// How a model was made, and what was found out about it.
@@ -274,9 +281,11 @@ struct ReducedModel {
   bool has_multipliers() const { return contact.has_multipliers(); }
   /// B and G do not separate: they are evaluated for each mu on the interfaces.
   bool evaluates_contact() const { return contact.b.size() == 0 && has_multipliers(); }
+  /// G is evaluated likewise, beside B or alone.
+  bool evaluates_gap() const { return contact.g.size() == 0 && has_multipliers(); }
 };
 
-inline constexpr int model_schema = 24;
+inline constexpr int model_schema = 25;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (fields may all be empty).

@@ -8,6 +8,7 @@
 #include "rbvi/contact/named_outputs.hpp"
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/model/cell_outputs.hpp"
+#include "rbvi/model/column_laws.hpp"
 #include "rbvi/model/cone_solver.hpp"
 #include "rbvi/model/law_solver.hpp"
 #include "rbvi/model/model.hpp"
@@ -92,6 +93,7 @@ private:
                             Outputs &outputs) const;
   void add_bound(const ReducedAnswer &solution, const Vector &lambda, Outputs &outputs) const;
   ReducedAnswer with_imposed_energy(ReducedAnswer answer) const;
+  double imposed_energy_at(const FullMu &mu) const;
 
   const ReducedModel &model_;
   const Scene scene_; ///< with_imposed_loads
@@ -100,6 +102,7 @@ private:
   std::unique_ptr<QueryMethod> method_;
   const ReducedNitsche *nitsche_ = nullptr; ///< it, by Nitsche's method
   std::optional<NodalTrace> trace_;         ///< else
+  std::optional<ColumnLaws> column_laws_;   ///< where they tell bounds of errors
   SparseMatrix dual_basis_;
   const std::vector<std::string> only_; ///< outputs of the scene
   const CellOutputs cell_outputs_;

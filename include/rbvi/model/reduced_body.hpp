@@ -30,6 +30,8 @@ public:
   /// Loads as BodyAtMu::response_of_prepared takes them, n x any number: turned, or where mu only
   /// scales A_N the response to them.
   Matrix prepared(const Matrix &loads) const;
+  /// Those of the terms of F, n x terms, where mu only scales A_N; else empty.
+  const Matrix &unit_responses() const { return unit_responses_; }
 
 private:
   friend class BodyAtMu;
@@ -43,7 +45,8 @@ private:
   Matrix eigenvalues_;  ///< n x terms: the diagonal of each
   Matrix a_, l_;        ///< A_1 and L, their lower triangles, where few functions change; or empty
   Matrix u_, along_;    ///< U, n x min(n, r); U^T L^-1 Q
-  Matrix turned_b_;     ///< n x generators, of the terms of B side by side
+  Matrix prepared_b_;   ///< n x generators, of the terms of B side by side
+  Matrix unit_responses_;
   Matrix turned_f_, turned_springs_; ///< of the terms of F; of the springs of free bodies
 };
 
@@ -76,8 +79,11 @@ public:
   Matrix half_response_of_turned(const Matrix &turned) const;
   /// The same times the root of scale(), with the same digits whatever that is.
   Matrix scaled_half_response_of_turned(const Matrix &turned) const;
-  Matrix half_response(const Matrix &loads) const;           ///< R^-1 loads, n x any number
-  Vector half_response_to_load() const;                      ///< R^-1 load()
+  Matrix half_response(const Matrix &loads) const; ///< R^-1 loads, n x any number
+  Vector half_response_to_load() const;            ///< R^-1 load()
+  Vector response_to_load() const;                 ///< A_N^-1 load()
+  /// The same is ReducedBody::unit_responses() times this; empty where it is not.
+  Vector load_shares() const;
   Matrix half_response_to_springs() const;                   ///< n x k
   Vector transposed_half_response(const Vector &half) const; ///< R^-T half
   Vector response_of_prepared(const Vector &prepared) const; ///< A_N^-1 of the load

@@ -4,10 +4,12 @@
 #pragma once
 
 #include "rbvi/method/compliance.hpp"
+#include "rbvi/method/lcp.hpp"
 #include "rbvi/model/answer.hpp"
 #include "rbvi/model/reduced_body.hpp"
 
 #include <memory>
+#include <optional>
 
 namespace rbvi {
 
@@ -18,9 +20,15 @@ public:
   virtual void set(const FullMu &mu, const Vector &state, ReducedAnswer &answer) = 0;
   virtual Matrix b() const = 0; ///< m x n, on the primal basis
   /// B u of any number of displacements.
-  virtual Matrix times(const Matrix &u) const { return b() * u; }
+  virtual Matrix times(const Matrix &u) const = 0;
+  /// B u of the displacement under the load of `body` alone.
+  virtual Vector times_response_to_load(const BodyAtMu & /*body*/, const Vector &u) const {
+    return times(u);
+  }
   /// H(:, which), m x which.size().
   virtual Matrix condensed_columns(const std::vector<Index> &which) = 0;
+  /// All of H, where it is a multiple of what the model has.
+  virtual std::optional<ScaledMatrix> condensed() const { return {}; }
   /// Whether this multiplier faces a partner.
   virtual bool faces(Index) const { return true; }
   /// Sets the displacement of answer.lambda without loads.
