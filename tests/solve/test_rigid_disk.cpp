@@ -280,7 +280,7 @@ TEST(RigidDisk, ContactOfTheUndeformedBodyFitsTheWideArc) {
                 1e-3 * *on_narrow.outputs.energy);
     EXPECT_NEAR(*on_wide.outputs.normal_force, *on_narrow.outputs.normal_force,
                 1e-3 * *on_narrow.outputs.normal_force);
-    for (const double radius : {0.7, 1.0, 1.3}) {
+    for (const double radius : {0.7, 1.3}) {
       const Mu deepest = with_radius(radius, 0.2, 0.2 * radius);
       EXPECT_THROW(narrow.check_parameters(expand(narrow.parameters, deepest)), Error);
       EXPECT_NO_THROW(wide.check_parameters(expand(wide.parameters, deepest)));

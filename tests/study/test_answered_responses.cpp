@@ -130,7 +130,7 @@ TEST(AnsweredResponses, TakeThePlaceOfLargeFields) {
 /// the displacement of its top alone where it has no weight.
 Scene pressed_wheel(bool heavy) {
   const std::string text =
-      "rbvi: 1\nphysics: plane_strain\nmesh: {built_in: annulus, edges: 24}\n"
+      "rbvi: 1\nphysics: plane_strain\nmesh: {built_in: annulus, edges: 16}\n"
       "parameters: {e: {range: [5, 20], default: 10}, n: {range: [0.2, 0.4], default: 0.3},\n"
       "  w: {range: [0.5, 2], default: 1}}\n"
       "materials: {rubber: {at: all, E: 'x < 0 ? e : 10', nu: n}}\n"
@@ -148,7 +148,7 @@ Scene pressed_wheel(bool heavy) {
 /// Where a displacement costs a factor of A_N, fewer functions have it as exactly: multipliers keep
 /// every digit that the gap under the load has, displacements what is wanted of them.
 TEST(AnsweredDisplacements, LeaveOutWhatNoAnswerNeeds) {
-  Scene disk = make_scene("rigid_disk", {{"arc_edges", "60"}});
+  Scene disk = make_scene("rigid_disk", {{"arc_edges", "40"}});
   disk.parameters = free_only(disk.parameters, "core_stiffness,poisson_ratio");
   for (const Scene &scene : {disk, pressed_wheel(true)}) {
     Reduced r(scene, "random:25:2");

@@ -43,15 +43,15 @@ ReduceOptions with(ReduceOptions options, ConeType type, const Way &way) {
 }
 
 /// What holds on every mesh is tested on a coarse one.
-Scene coarse_scene(const std::string &map) {
-  return make_scene("membrane_obstacle", {{"disc_map", map}, {"circle_edges", "36"}});
+Scene coarse_scene(const std::string &map, const std::string &edges = "36") {
+  return make_scene("membrane_obstacle", {{"disc_map", map}, {"circle_edges", edges}});
 }
 
 class DualBases : public testing::TestWithParam<const char *> {};
 INSTANTIATE_TEST_SUITE_P(Maps, DualBases, testing::Values("similarity", "graded"));
 
 TEST_P(DualBases, ABasisOfAllSnapshotsReturnsThem) {
-  Reduced r(coarse_scene(GetParam()), "grid:2,2,2");
+  Reduced r(coarse_scene(GetParam(), "24"), "grid:2,2,2");
   for (const ConeType type : {ConeType::hybrid, ConeType::nodal})
     for (const Way &way : ways_with(GetParam())) {
       SCOPED_TRACE(described(type, way));
@@ -67,7 +67,7 @@ TEST_P(DualBases, ABasisOfAllSnapshotsReturnsThem) {
 
 /// No answer is better than the best of its spaces, and errors at training parameters are small.
 TEST_P(DualBases, EveryTypeAndEnrichmentReduces) {
-  Reduced r(coarse_scene(GetParam()), "grid:3,2,2");
+  Reduced r(coarse_scene(GetParam(), "24"), "grid:3,2,2");
   for (const ConeType type : {ConeType::cpg, ConeType::mcpg, ConeType::angle_greedy, ConeType::nmf,
                               ConeType::nodal, ConeType::hybrid})
     for (const Way &way : ways_with(GetParam())) {
@@ -93,7 +93,7 @@ TEST_P(DualBases, EveryTypeAndEnrichmentReduces) {
 TEST_P(DualBases, WithoutEnrichmentThereAreNoSupremizers) {
   ReduceOptions options;
   options.enrichment = Enrichment::decorrelated;
-  Reduced r({{"disc_map", GetParam()}}, "grid:2,2,2", options);
+  Reduced r({{"disc_map", GetParam()}, {"circle_edges", "24"}}, "grid:2,2,2", options);
   EXPECT_EQ(r.model.body.supremizers, 0);
   EXPECT_EQ(r.model.primal_size(), r.model.body.modes);
   EXPECT_FALSE(r.model.body.online_enriched);
@@ -197,7 +197,7 @@ TEST(EnergySupremizers, HybridIsExactAsWell) {
 
 /// From the same training set; a cone of snapshots has no more generators than snapshots there.
 TEST_P(DualBases, HybridBeatsTheConeOfTheSameSnapshots) {
-  Reduced r(make_scene("membrane_obstacle", {{"disc_map", GetParam()}}), "grid:3,3,3");
+  Reduced r(coarse_scene(GetParam()), "grid:3,3,3");
   const std::vector<Sample> unseen =
       solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:8:4"));
   ReduceOptions options;

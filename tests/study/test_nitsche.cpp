@@ -290,7 +290,7 @@ TEST(NitscheReduced, EveryParameterIsReduced) {
                                     {"radius,poisson_ratio", 1e-2},
                                     {"indentation,friction_coefficient", 2e-2}}) {
     SCOPED_TRACE(free);
-    ReducedAlone r(disk("coulomb", free), "grid:7,7");
+    ReducedAlone r(disk("coulomb", free), "grid:5,5");
     const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:5:3"));
     ReduceOptions options = with(CurveRule::empirical);
     options.pod.tolerance = 1e-5;

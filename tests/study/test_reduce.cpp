@@ -11,17 +11,35 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <memory>
 
 namespace rbvi::reduce_test {
 namespace {
 
 using namespace testing_reduced;
 
-class BothMaps : public testing::TestWithParam<const char *> {};
+/// What holds on every mesh is tested on a coarse one.
+const char *const coarse = "24";
+
+class BothMaps : public testing::TestWithParam<const char *> {
+protected:
+  static SceneOptions options() { return {{"disc_map", GetParam()}, {"circle_edges", coarse}}; }
+  /// With a basis of all snapshots, reduced once.
+  static Reduced &whole() {
+    std::unique_ptr<Reduced> &r = wholes[GetParam()];
+    if (!r) r = std::make_unique<Reduced>(options(), "grid:2,2,2", everything());
+    return *r;
+  }
+  static void TearDownTestSuite() { wholes.clear(); }
+
+private:
+  static inline std::map<std::string, std::unique_ptr<Reduced>> wholes;
+};
 INSTANTIATE_TEST_SUITE_P(Maps, BothMaps, testing::Values("similarity", "graded"));
 
 TEST_P(BothMaps, ABasisOfAllSnapshotsReturnsThem) {
-  Reduced r({{"disc_map", GetParam()}}, "grid:2,2,2", everything());
+  Reduced &r = whole();
   const Truths truths = make_truths(r.problem, r.model, r.samples);
   const ModelErrors errors = model_errors(r.model, {}, truths, r.problem.w_product());
   EXPECT_LE(errors.u.maxCoeff(), 1e-9);
@@ -30,7 +48,7 @@ TEST_P(BothMaps, ABasisOfAllSnapshotsReturnsThem) {
 }
 
 TEST_P(BothMaps, OutputsOfTheReducedModelAreThoseOfItsSnapshots) {
-  Reduced r({{"disc_map", GetParam()}}, "grid:2,2,2", everything());
+  const Reduced &r = whole();
   OnlineSolver online(r.model);
   for (const Sample &sample : r.samples) {
     const ReducedAnswer answer = online.solve(sample.mu);
@@ -47,12 +65,12 @@ TEST_P(BothMaps, OutputsOfTheReducedModelAreThoseOfItsSnapshots) {
 TEST(QuadraticModel, ReturnsItsSnapshotsAndAnswersBetweenThem) {
   for (const char *lumped : {"no", "yes"}) {
     SCOPED_TRACE(lumped);
-    const SceneOptions scene{{"degree", "2"}, {"lumped", lumped}, {"circle_edges", "24"}};
+    const SceneOptions scene{{"degree", "2"}, {"lumped", lumped}, {"circle_edges", coarse}};
     Reduced all(scene, "grid:2,2,2", everything());
     const ModelErrors own = all.errors_at(all.samples);
     EXPECT_LE(own.u.maxCoeff(), 1e-9);
     EXPECT_LE(own.lambda.maxCoeff(), 1e-7);
-    Reduced model(scene, "grid:5,5,5", {});
+    Reduced model(scene, "grid:4,4,4", {});
     const auto unseen = parse_set(model.problem.scene().parameters, "random:8:7");
     const ModelErrors between = model.errors_at(solve_all(model.problem, unseen));
     EXPECT_LE(between.u.maxCoeff(), 1e-4);
@@ -149,7 +167,7 @@ TEST_P(BothMaps, TheSharpBoundHoldsAtEveryTrainingParameter) {
   options.pod.tolerance = 1e-4;
   for (const double fraction : {0.3, 0.9}) {
     options.pga.stability = fraction;
-    Reduced r({{"disc_map", GetParam()}, {"circle_edges", "36"}}, "grid:3,3,3", options);
+    Reduced r(BothMaps::options(), "grid:3,3,3", options);
     const StabilityCheck check = make_stability_check(r.problem, r.model);
     for (const Sample &sample : r.samples) {
       const Matrix t =
@@ -164,7 +182,7 @@ TEST_P(BothMaps, TheSharpBoundHoldsAtEveryTrainingParameter) {
 }
 
 TEST_P(BothMaps, ConstantsComeInTheirOrder) {
-  Reduced r(make_scene("membrane_obstacle", {{"disc_map", GetParam()}}), "grid:3,2,2");
+  Reduced r(make_scene("membrane_obstacle", options()), "grid:3,2,2");
   for (const ConeType type : {ConeType::mcpg, ConeType::hybrid}) {
     SCOPED_TRACE(cone_type_names()[static_cast<std::size_t>(type)]);
     ReduceOptions options;
@@ -216,7 +234,7 @@ TEST_P(BothMaps, TheFewestSupremizersAreJustEnough) {
   ReduceOptions options;
   options.pod.tolerance = 1e-2; // few modes, so that supremizers are needed
   options.pga.tolerance = 1e-3;
-  Reduced r({{"disc_map", GetParam()}}, "grid:3,3,2", options);
+  Reduced r(BothMaps::options(), "grid:3,3,2", options);
   const StabilityCheck check = make_stability_check(r.problem, r.model);
   const std::vector<Mu> set = parse_set(r.problem.scene().parameters, "random:7:5");
   const MPI_Comm world = PETSC_COMM_WORLD;
@@ -240,7 +258,7 @@ TEST(Reduce, ErrorsAgreeWithADirectComputation) {
   ReduceOptions options;
   options.pod.tolerance = 1e-2;
   options.cone.tolerance = 0.1;
-  Reduced r({}, "grid:3,2,2", options);
+  Reduced r({{"circle_edges", coarse}}, "grid:3,2,2", options);
   const std::vector<Sample> valid = solve_all(r.problem, {{0.21, 0.01, 0.02}});
   const Truths truths = make_truths(r.problem, r.model, valid);
   const ModelErrors errors = model_errors(r.model, {}, truths, r.problem.w_product());
@@ -264,7 +282,7 @@ TEST(Reduce, AnEnrichedPairOfFullSizeIsTheModelItself) {
   ReduceOptions options;
   options.pod.tolerance = 1e-3;
   options.pga.tolerance = 1e-9;
-  Reduced r({}, "grid:3,2,2", options);
+  Reduced r({{"circle_edges", coarse}}, "grid:3,2,2", options);
   const SubModel pair = enriched_pair(r.model, r.model.body.modes, r.model.contact.generators);
   const Truths truths =
       make_truths(r.problem, r.model, solve_all(r.problem, {{0.17, -0.04, 0.03}}));
@@ -275,7 +293,7 @@ TEST(Reduce, AnEnrichedPairOfFullSizeIsTheModelItself) {
 }
 
 TEST(Reduce, APairKeepsItsAnswersAtTheSamples) {
-  const Reduced r(SceneOptions{}, "grid:2,2,2", ReduceOptions{});
+  const Reduced r({{"circle_edges", coarse}}, "grid:2,2,2", ReduceOptions{});
   const Matrix &starts = r.model.contact.starts;
   ASSERT_EQ(starts.cols(), std::ssize(r.samples));
   OnlineSolver online(r.model);

@@ -208,7 +208,7 @@ TEST(SeparationErrors, OverTheTrainingSetAreThoseOfTheGreedy) {
   expect_training_errors(r, {"b", "g"});
   ReduceOptions obstacle;
   obstacle.eim.tolerance = 1e-3;
-  Reduced membrane({{"disc_map", "graded"}}, "grid:3,2,2", obstacle);
+  Reduced membrane({{"disc_map", "graded"}, {"circle_edges", "24"}}, "grid:3,2,2", obstacle);
   expect_training_errors(membrane, {"a", "b", "f", "g"});
 }
 
