@@ -20,7 +20,7 @@
 namespace rbvi {
 namespace {
 
-constexpr std::size_t queries = 200;
+constexpr std::size_t queries = 60;
 
 class CInterface : public testing::TestWithParam<const char *> {
 protected:
