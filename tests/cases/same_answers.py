@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""same_answers.py BIN OUT: answers depend on the parameter and on what the model was made of alone.
+"""same_answers.py BIN OUT RUNS: answers depend on the parameter and on what the model was made of alone.
 
-Of several answers to a law the rule of the page ANSWERS.md chooses one. Every case and variant is reduced on few parameters by one rank and by two. Both models answer the same
-queries, one of them also in the reverse order.
+Of several answers to a law the rule of the page ANSWERS.md chooses one. Every case and variant is reduced on
+few parameters by one rank and by two. Both models answer the same queries, one of them also in the reverse
+order. Some models of one rank are those of small_runs.py in RUNS.
 """
 
 import csv
@@ -11,36 +12,36 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path[:0] = [str(Path(__file__).resolve().parents[1] / folder) for folder in ("", "docs")]
 
+import small_runs
 from at_once import run_program
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
+SMALL = {"membrane_obstacle": "membrane", "roller": "roller", "two_disks": "two_disks",
+         "two_disks/cone": "two_disks_cone"}
 FEW = {
-    "membrane_obstacle": ["-train", "grid:3,2,2"],
     "membrane_obstacle/published": ["-train", "grid:3,2,2"],
     "patch": ["-train", "grid:3"],
-    "rigid_disk": ["-train", "grid:9"],
+    "rigid_disk": ["-train", "grid:9", "-arc_edges", "40"],
     "rigid_disk/large": ["-train", "random:8:1", "-arc_edges", "40"],
     "rigid_disk/large_nitsche": ["-train", "random:8:1", "-arc_edges", "40"],
     "rigid_disk/nitsche": ["-train", "grid:5", "-arc_edges", "40"],
     "rigid_disk/nitsche_published": ["-train", "grid:9", "-radius", "0.8,1", "-arc_edges", "40"],
-    "rigid_disk/published": ["-train", "grid:21"],
+    "rigid_disk/published": ["-train", "grid:21", "-arc_edges", "40"],
     "rigid_disk/published_large": ["-train", "random:8:1", "-arc_edges", "40"],
-    "roller": ["-train", "grid:3,3"],
-    "two_disks": ["-train", "grid:9"],
-    "two_disks/cone": ["-train", "grid:9"],
-    "two_disks/large": ["-train", "grid:5"],
-    "two_disks/published": ["-train", "grid:9"],
+    "two_disks/large": ["-train", "grid:5", "-arc_edges", "40"],
+    "two_disks/published": ["-train", "grid:9", "-arc_edges", "40"],
 }
 if shutil.which("gmsh"):  # which meshes geometries
     FEW |= {"bolted_flange": ["-train", "random:12:1", "-set", "mesh.set.edges=15"],
             "seal": ["-train", "random:12:1", "-set", "mesh.set.edges=40"]}
-    FEW |= {"rigid_ball": ["-train", "random:12:1", "-set", "mesh.set.size=2.5"]}
+    SMALL["rigid_ball"] = "solid"
     FEW |= {name: ["-train", "random:12:1", "-set", "mesh.set.edges=10", "-radius", "7"]
             for name in ("bracket", "bracket/guided")}
     FEW |= {name: ["-train", "random:12:1", "-set", "mesh.set.edges=30", "-pull", "0,600"]
             for name in ("joint", "joint/tightening")}
+FEW |= {name: [] for name in SMALL}  # as they are there
 # Of the answer itself, or round-off: not what is asked.
 CHECKS = ("seconds", "iterations", "kkt_residual", "quadrature_residual", "friction_violation",
           "load_steps", "contraction", "training", "max_penetration")
@@ -87,29 +88,36 @@ def difference(one, other):
     return worst
 
 
-def compare(binaries, out, name):
-    models = []
-    for ranks in (1, 2):
-        run = out / f"{name.replace('/', '_')}_{ranks}"
-        scene, _, variant = name.partition("/")
-        call("mpirun", "-n", str(ranks), binaries / "rbvi", "offline", "-case", CASES / scene,
-             *(["-variant", variant] if variant else []), *FEW[name], "-out", run)
-        models.append(run)
+def made(binaries, out, runs, name, ranks):
+    """The run of this case and variant."""
+    if name in SMALL and ranks == 1:
+        return runs / SMALL[name]
+    run = out / f"{name.replace('/', '_')}_{ranks}"
+    scene, _, variant = name.partition("/")
+    options = small_runs.RUNS[SMALL[name]] if name in SMALL else [
+        "-case", CASES / scene, *(["-variant", variant] if variant else []), *FEW[name]]
+    by = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
+    call(*by, binaries / "rbvi", "offline", *options, "-out", run)
+    return run
+
+
+def compare(binaries, out, runs, name):
+    models = [made(binaries, out, runs, name, ranks) for ranks in (1, 2)]
     tables = []
-    for run in models:
-        tables.append(run / "answers.csv")
+    for ranks, run in enumerate(models, 1):
+        tables.append(out / f"{name.replace('/', '_')}_answers_{ranks}.csv")
         call(binaries / "rbvi-online", run / "model.h5", "--queries", "random:20:3", "--out",
              tables[-1])
     one, two = map(rows_of, tables)
     header = (models[0] / "samples.csv").read_text(encoding="utf-8").split("\n", 1)[0].split(",")
     names = header[:header.index("energy")]
-    backwards = models[0] / "backwards.csv"
+    backwards = out / f"{name.replace('/', '_')}_backwards.csv"
+    answers = backwards.with_suffix(".answers.csv")
     with open(backwards, "w", encoding="utf-8") as table:
         table.write("\n".join([",".join(names)] +
                               [",".join(row[n] for n in names) for row in reversed(one)]) + "\n")
-    call(binaries / "rbvi-online", models[0] / "model.h5", "--queries", backwards, "--out",
-         models[0] / "backwards_answers.csv")
-    reverse = rows_of(models[0] / "backwards_answers.csv")[::-1]
+    call(binaries / "rbvi-online", models[0] / "model.h5", "--queries", backwards, "--out", answers)
+    reverse = rows_of(answers)[::-1]
     return difference(one, reverse), difference(one, two)
 
 
@@ -134,7 +142,7 @@ def variants(binaries, scene):
     return [line.split()[1] for line in said.splitlines() if line.startswith("  -variant ")]
 
 
-def main(binaries, out):
+def main(binaries, out, runs):
     shutil.rmtree(out, ignore_errors=True)
     found = {str(path.parent.relative_to(CASES)) for path in CASES.glob("*/case.yaml")
              if shutil.which("gmsh") or not list(path.parent.glob("*.geo"))}
@@ -143,7 +151,7 @@ def main(binaries, out):
     out.mkdir(parents=True)
     wrong += several(binaries, out)
     with ThreadPoolExecutor(2) as pool:
-        results = {name: pool.submit(compare, binaries, out, name) for name in FEW}
+        results = {name: pool.submit(compare, binaries, out, runs, name) for name in FEW}
     for name, result in results.items():
         (by_order, of_order), (by_ranks, of_ranks) = result.result()
         print(f"{name:36s} order {by_order:.1e} {of_order:22s} ranks {by_ranks:.1e} {of_ranks}")
@@ -157,4 +165,4 @@ def main(binaries, out):
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()))
+    sys.exit(main(*(Path(word).resolve() for word in sys.argv[1:4])))

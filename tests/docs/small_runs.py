@@ -19,8 +19,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from at_once import run_program
 from every_scene import CASES, every_scene
 
-DISK = ["-case", CASES / "rigid_disk/case.yaml"]
-NITSCHE = [*DISK, "-formulation", "nitsche", "-arc_edges", "40", "-train", "grid:5"]
+DISK = ["-case", CASES / "rigid_disk/case.yaml", "-arc_edges", "40"]
+TWO = ["-case", CASES / "two_disks/case.yaml", "-arc_edges", "40"]
+NITSCHE = [*DISK, "-formulation", "nitsche", "-train", "grid:5"]
 REDUCED = "-multiplier_reduction"
 RUNS = {
     "membrane": ["-case", CASES / "membrane_obstacle/case.yaml", "-train", "grid:3,2,2"],
@@ -30,14 +31,13 @@ RUNS = {
                        "-parameters", "radius,frame_height"],
     "membrane_degree_2": ["-case", CASES / "membrane_obstacle/case.yaml", "-train", "grid:3,2,2",
                           "-degree", "2", "-lumped", "no"],
-    "two_disks": ["-case", CASES / "two_disks/case.yaml", "-train", "grid:9"],
-    "two_disks_cone": ["-case", CASES / "two_disks/case.yaml", "-variant", "cone", "-train", "grid:9"],
+    "two_disks": [*TWO, "-train", "grid:9"],
+    "two_disks_cone": [*TWO, "-variant", "cone", "-train", "grid:9"],
     "disk_none": [*DISK, "-train", "grid:9", "-friction", "none"],
     "disk_condensed": [*DISK, "-train", "grid:3,3", "-parameters", "radius,core_stiffness", "-certify"],
     "disk_collocated": [*DISK, "-train", "grid:15", "-normal", "rigid", REDUCED, "collocated"],
     "disk_large": ["-case", CASES / "rigid_disk/case.yaml", "-variant", "large", "-train", "random:8:1"],
-    "disk_large_cone": ["-case", CASES / "rigid_disk/case.yaml", "-variant", "large", "-train", "random:8:1",
-                        "-arc_edges", "40", REDUCED, "cone"],
+    "disk_large_cone": [*DISK, "-variant", "large", "-train", "random:8:1", REDUCED, "cone"],
     "nitsche_empirical": NITSCHE,
     "nitsche_interpolated": [*NITSCHE, "-nitsche_quadrature", "interpolated",
                              "-nitsche_eim_validation", "random:2:2"],

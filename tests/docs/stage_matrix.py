@@ -25,7 +25,7 @@ ROWS = {
         "-disc_map", "graded", "-variant", "published", "-cone_type", "mcpg"]),
     "two_disks": ("two_disks", []),
     "two_disks, cone": ("two_disks", ["-variant", "cone"]),
-    "two_disks, large": ("two_disks", ["-variant", "large"]),
+    "two_disks, large": ("two_disks", [*SHORT, "-variant", "large"]),
     "rigid_disk": (DISK, SHORT),
     "rigid_disk, Poisson's ratio free": (DISK, [*SHORT, "-parameters", "radius,poisson_ratio"]),
     "rigid_disk, collocated": (DISK, [*SHORT, "-multiplier_reduction", "collocated"]),
@@ -37,10 +37,10 @@ ROWS = {
     "roller": ("roller", []),
     "patch": ("patch", []),
     "bolted_flange": ("bolted_flange", []),
-    "seal": ("seal", []),
+    "seal": ("seal", ["-set", "mesh.set.edges=40"]),
     "bracket": ("bracket", []),
-    "joint": ("joint", []),
-    "rigid_ball": ("rigid_ball", ["-set", "mesh.set.size=2"]),
+    "joint": ("joint", ["-set", "mesh.set.edges=30"]),
+    "rigid_ball": ("rigid_ball", ["-set", "mesh.set.size=3"]),
 }
 PARTS = ("bolted_flange", "seal", "bracket", "joint")  # of many parameters, from geometries that gmsh meshes
 HEAD = ["scene", "samples", "full solves: factorisations", "assemblies", "interpolations", "POD",
