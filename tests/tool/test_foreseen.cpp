@@ -92,10 +92,10 @@ TEST_P(Foreseeing, ARunThatDoesNotFitIsRefusedBeforeAnythingIsWritten) {
 
 INSTANTIATE_TEST_SUITE_P(
     Cases, Foreseeing,
-    testing::Values(Run{"rigid_disk", {}, 1, "random:20:1"},
+    testing::Values(Run{"rigid_disk", {}, 1, "random:10:1"},
                     Run{"rigid_disk", {{"formulation", "nitsche"}}, 0, "grid:5"},
                     Run{"membrane_obstacle", {{"circle_edges", "72"}}, 0, "grid:2,2,2"},
-                    Run{"two_disks", {}, 1, "7"}, Run{"patch", {}, 2, "5"}),
+                    Run{"two_disks", {}, 1, "4"}, Run{"patch", {}, 2, "5"}),
     [](const auto &of) {
       const SceneOptions &choices = of.param.choices;
       return of.param.scene + (choices.contains("formulation") ? "_nitsche" : "");
