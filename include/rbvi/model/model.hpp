@@ -240,9 +240,10 @@ struct CertificateReference {
 /// What bounds of errors are made of (model/certificate.hpp); without references there are none,
 /// unless the law tells them.
 struct CertificateModel {
-  /// Multipliers are those of the whole body, as mu only scales A, the condensed operator is exact
-  /// and known at every node. Nothing more is needed than what the basis leaves of A_1^-1 F, in
-  /// coordinates that are orthonormal in A_1 (A = common coefficient times A_1): any x terms of F.
+  /// Multipliers are those of the whole body: mu only scales A, G is evaluated, and the condensed
+  /// operator is exact and known at every node. Nothing more is needed than what the basis leaves
+  /// of A_1^-1 F, in coordinates that are orthonormal in A_1 (A = common coefficient times A_1):
+  /// any x terms of F.
   bool by_law = false;
   Matrix left_of_loads;
   std::vector<CertificateReference> references;
