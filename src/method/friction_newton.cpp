@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rbvi::friction {
 
 namespace {
+
+constexpr Index many = 100; ///< unknowns, whose factors take longer than their refinement
 
 /// Whether its determinant is negative.
 bool is_negative(const Eigen::PartialPivLU<Matrix> &lu) {
@@ -166,6 +169,10 @@ System::System(const LazyColumns &h, const NodeLaws &laws, ActiveSets sets)
                              : tangential_diagonal(diagonal, laws, u.node));
   });
   assemble(h, laws);
+  if (!symmetric_ && laws.tangents == 2 && std::ssize(list_) >= many) {
+    rough_.emplace(matrix_.cast<float>());
+    return;
+  }
   if (!symmetric_) {
     lu_.compute(matrix_);
     negative_ = is_negative(lu_);
@@ -178,9 +185,14 @@ System::System(const LazyColumns &h, const NodeLaws &laws, ActiveSets sets)
 void System::assemble(const LazyColumns &h, const NodeLaws &laws) {
   const Index count = std::ssize(list_);
   matrix_.resize(count, count);
-  std::vector<Index> turns; // rows of two entries
-  for (Index k = 0; k < count; ++k)
+  std::vector<Index> rows, turns; // turns: rows of two entries
+  Vector factors(count);          // of the first
+  rows.reserve(count);
+  for (Index k = 0; k < count; ++k) {
+    rows.push_back(list_[k].first);
+    factors[k] = list_[k].a;
     if (list_[k].b != 0) turns.push_back(k);
+  }
   for (Index k = 0; k < count; ++k) {
     const Unknown &u = list_[k];
     auto of_rows = matrix_.col(k);
@@ -188,7 +200,7 @@ void System::assemble(const LazyColumns &h, const NodeLaws &laws) {
     const auto add = [&](double factor, Index of) {
       const auto column = h.column(of);
       for (Index r = 0; r < count; ++r) // twice as fast as an expression with indices
-        of_rows[r] += factor * list_[r].a * column[list_[r].first];
+        of_rows[r] += factor * factors[r] * column[rows[r]];
       for (const Index r : turns)
         of_rows[r] += factor * list_[r].b * column[list_[r].second];
     };
@@ -209,8 +221,25 @@ Vector System::right_side(const Vector &y) const {
   });
 }
 
+Vector System::refined(const Vector &right) const {
+  constexpr double round_off = 1e-15, enough = 1e-13, shrinks = 0.1;
+  Vector u = Vector::Zero(right.size()), left = right;
+  for (double before = std::numeric_limits<double>::infinity(), scale = 0;
+       (scale = left.norm()) > 0;) {
+    const Vector change = scale * rough_->solve((left / scale).cast<float>()).cast<double>();
+    u += change;
+    const double size = change.norm() / u.norm();
+    if (size <= round_off || (size <= enough && size > shrinks * before)) return u;
+    if (!(size <= shrinks * before)) return Eigen::PartialPivLU<Matrix>(matrix_).solve(right);
+    before = size;
+    left = right - matrix_ * u;
+  }
+  return u;
+}
+
 Vector System::solve(const Vector &right, int refinements) const {
   if (right.size() == 0) return right;
+  if (rough_) return refined(right).cwiseProduct(unit_);
   const auto once = [&](const Vector &r) -> Vector {
     return symmetric_ ? cholesky_solve(lower_, r) : Vector(lu_.solve(r));
   };

@@ -109,6 +109,8 @@ private:
   void assemble(const LazyColumns &h, const NodeLaws &laws);
   /// -(a y[first] + b y[second]) of each row, in its unit.
   Vector right_side(const Vector &y) const;
+  /// By the factors in single precision, which cost half, refined to round-off.
+  Vector refined(const Vector &right) const;
   /// The unknowns for a right side.
   Vector solve(const Vector &right, int refinements) const;
 
@@ -116,7 +118,9 @@ private:
   std::vector<Unknown> list_;
   Vector unit_; ///< what scales the diagonal of H to one
   Matrix matrix_, lower_;
-  Eigen::PartialPivLU<Matrix> lu_; ///< where it is not symmetric
+  // Where it is not symmetric, the one or the other:
+  Eigen::PartialPivLU<Matrix> lu_;
+  std::optional<Eigen::PartialPivLU<Eigen::MatrixXf>> rough_; ///< in space, of many unknowns
   bool symmetric_ = true, negative_ = false;
   Solved solved_ = Solved::yes;
 };

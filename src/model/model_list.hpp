@@ -176,15 +176,8 @@ template <class Store, class Model> void list_contact(const Store &store, Model 
                   list_interface(store, at, interface, dim,
                                  rows > 0 ? rows : std::numeric_limits<int>::max());
                 });
-  auto &basis = model.contact.dual_basis;
   const Index generators = model.contact.generators;
-  auto dual = static_cast<int>(basis.rows());
-  store("contact/dual_size", dual, Between{0, std::numeric_limits<int>::max()});
-  list_as(
-      store, "contact/dual_basis", basis, entries_of,
-      [&](const Matrix &entries) { return matrix_of(dual, generators, entries); },
-      Shape{any_size, 3});
-  store.ask("contact/dual_basis does not fit", [&] { return basis.cols() == generators; });
+  store("contact/dual_basis", model.contact.dual_basis, Shape{any_size, generators});
   const bool known = model.contact.starts.size() > 0;
   store("contact/starts", model.contact.starts, Shape{known ? generators : any_size, any_size});
   const bool partial = !model.contact.trace_dofs.empty();

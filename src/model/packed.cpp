@@ -36,28 +36,6 @@ Matrix leading_triangles(const Matrix &packed, Index n, Index size) {
   return result;
 }
 
-Matrix entries_of(const Matrix &matrix) {
-  Matrix entries((matrix.array() != 0).count(), 3);
-  for (Index j = 0, k = 0; j < matrix.cols(); ++j)
-    for (Index i = 0; i < matrix.rows(); ++i)
-      if (matrix(i, j) != 0)
-        entries.row(k++) << static_cast<double>(i), static_cast<double>(j), matrix(i, j);
-  return entries;
-}
-
-Matrix matrix_of(Index rows, Index columns, const Matrix &entries) {
-  Matrix result = Matrix::Zero(rows, columns);
-  if (entries.rows() > 0 && entries.cols() != 3)
-    throw bad_input("entries of a matrix do not come as row, column, value");
-  for (Index k = 0; k < entries.rows(); ++k) {
-    const double i = entries(k, 0), j = entries(k, 1);
-    if (!(i >= 0 && i < static_cast<double>(rows) && j >= 0 && j < static_cast<double>(columns)))
-      throw bad_input("an entry is outside of its matrix");
-    result(static_cast<Index>(i), static_cast<Index>(j)) = entries(k, 2);
-  }
-  return result;
-}
-
 std::vector<int> diagonal_blocks(const Matrix &squares) {
   const auto n = static_cast<Index>(std::lround(std::sqrt(static_cast<double>(squares.rows()))));
   std::vector<int> blocks;

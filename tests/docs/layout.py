@@ -78,7 +78,7 @@ def known_sizes(file):
             "d": file["interfaces/0/points"].shape[1], "k": int(file["contact/dofs"][()]),
             "l": len(file["law/dofs"]) if "law/dofs" in file else 0,
             "H": sum(b * (b + 1) // 2 for b in file["law/blocks"]) if "law/blocks" in file else 0,
-            "c": int(file["contact/dual_size"][()])}
+            "c": file["contact/dual_basis"].shape[0]}
 
 
 def check_shapes(file, table, known, where):

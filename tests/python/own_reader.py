@@ -117,9 +117,7 @@ class Model:
             file.visititems(lambda name, item: self.data.update({name: item[()]})
                             if isinstance(item, h5py.Dataset) else None)
         self.names = [name.decode() for name in self.data["parameters/names"]]
-        self.dual = np.zeros((int(self.data["contact/dual_size"]), int(self.data["size/generators"])))
-        rows, columns, values = self.data["contact/dual_basis"].reshape(-1, 3).T
-        self.dual[rows.astype(int), columns.astype(int)] = values
+        self.dual = self.data["contact/dual_basis"]
         self.per_entity = self.data["interfaces/0/sizes"][3]
         self.entities = self.data["interfaces/0/entities"].reshape(-1, self.per_entity)
 

@@ -34,12 +34,6 @@ inline Vector pack(const Matrix &square) {
 /// Of matrices of order n, each a packed column, their leading blocks of order `size`.
 Matrix leading_triangles(const Matrix &packed, Index n, Index size);
 
-/// The entries that are not zero, a row for each: its row, its column, its value.
-Matrix entries_of(const Matrix &matrix);
-/// The matrix again. Throws bad_input where `entries` has not three columns or names places
-/// outside.
-Matrix matrix_of(Index rows, Index columns, const Matrix &entries);
-
 // Symmetric matrices of order n that are zero outside of the same diagonal blocks, one for each
 // body. `squares`: n^2 x count, each a column of its entries, column by column.
 
