@@ -148,15 +148,17 @@ AnswerBound bound_by_law(const ReducedModel &model, const Scene &scene, const No
   const Vector theta_f = load_coefficients(model, scene, answer.mu);
   const double square =
       energy_product(model, affine_coefficients(model.body.a, scene.a, scene, answer.mu), answer.u);
-  double work = 0, outside = 0; // of the load
+  double work = 0, alone = 0, outside = 0; // of the load
   if (theta_f.size() > 0) {
+    const double root = std::sqrt(common_coefficient(scene.a, scene.parameters, answer.mu));
     work = answer.u.dot(model.body.f.reduced * theta_f);
-    outside = (model.certificate.left_of_loads * theta_f).norm() /
-              std::sqrt(common_coefficient(scene.a, scene.parameters, answer.mu));
+    alone = (model.certificate.of_loads * theta_f).squaredNorm() / (root * root);
+    outside = (model.certificate.left_of_loads * theta_f).norm() / root;
   }
   const double of_law = answer.energy - imposed_energy;
-  const double apart = std::max(0.0, 2 * of_law - (square - 2 * work)) +
-                       units * (std::abs(of_law) + square + std::abs(work));
+  const double apart =
+      std::max(0.0, 2 * of_law - (square - 2 * work)) +
+      units * (std::abs(answer.energy) + std::abs(imposed_energy) + square + alone);
   double slack = 0;
   const Vector &x = answer.lambda, &w = answer.left;
   for (const Index row : laws.normal)

@@ -11,8 +11,9 @@ template <class Store, class Model> void list_certificate(const Store &store, Mo
   const Index contact = model.contact.interfaces.empty() ? 0 : model.contact_dofs(),
               terms = model.body.a.size();
   list_integer(store, "certificate/by_law", certificate.by_law);
-  store("certificate/left_of_loads", certificate.left_of_loads,
-        Shape{any_size, certificate.by_law ? model.body.f.size() : any_size});
+  const Index loads = certificate.by_law ? model.body.f.size() : 0;
+  store("certificate/of_loads", certificate.of_loads, Shape{loads, loads});
+  store("certificate/left_of_loads", certificate.left_of_loads, Shape{loads, loads});
   store("certificate/dofs", certificate.dofs, Indices{contact});
   store("certificate/lifting_trace", certificate.lifting_trace);
   const Index lifting = certificate.lifting_trace.cols();

@@ -10,6 +10,7 @@
 #include "shared_stages.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace rbvi {
@@ -187,13 +188,24 @@ bool is_told_by_law(const Problem &problem, const ReducedModel &model) {
          contact.dual_basis.rowwise().lpNorm<Eigen::Infinity>().minCoeff() > 0;
 }
 
-/// CertificateModel::left_of_loads. Collective.
-Matrix left_of_loads(Problem &problem, const Mu &mu, const LinearBasis &basis) {
-  if (problem.f_terms().exact.empty()) return Matrix(0, 0);
-  const Operators &op = problem.assemble(mu);
+/// Its root R, R^T R = the product of these columns in A. Collective.
+Matrix root_of_product(Mat columns, Mat a) {
+  const EigenPairs pairs = eigen_pairs(projected(columns, a, columns));
+  return pairs.values.cwiseMax(0).cwiseSqrt().asDiagonal() * pairs.vectors.transpose();
+}
+
+/// What the law needs beside itself. Collective.
+CertificateModel told_by_law(Problem &problem, const LinearBasis &basis) {
+  CertificateModel certificate;
+  certificate.by_law = true;
+  if (problem.f_terms().exact.empty()) return certificate;
+  const Scene &scene = problem.scene();
+  const Operators &op = problem.assemble(box_centre(scene.parameters));
   const Handle<KSP> ksp = make_direct_solver(problem.comm(), "hf_");
   set_operator(ksp.get(), op.a);
   Handle<Mat> left = solved(ksp.get(), loads_of(problem, op.a).get());
+  const double scale = std::sqrt(common_coefficient(scene.a, scene.parameters, op.mu));
+  certificate.of_loads = scale * root_of_product(left.get(), op.a);
   const BorrowedColumns columns(basis.columns.get());
   const Matrix stiffness = projected(columns.get(), op.a, columns.get());
   for (int pass = 0; pass < 2; ++pass) { // of small differences the first leaves round-off
@@ -201,9 +213,8 @@ Matrix left_of_loads(Problem &problem, const Mu &mu, const LinearBasis &basis) {
     left = dense_like(op.a,
                       BorrowedRows(left.get()).rows() - BorrowedRows(columns.get()).rows() * known);
   }
-  const EigenPairs pairs = eigen_pairs(projected(left.get(), op.a, left.get()));
-  const double common = common_coefficient(problem.scene().a, problem.scene().parameters, op.mu);
-  return (common * pairs.values).cwiseMax(0).cwiseSqrt().asDiagonal() * pairs.vectors.transpose();
+  certificate.left_of_loads = scale * root_of_product(left.get(), op.a);
+  return certificate;
 }
 
 } // namespace
@@ -225,13 +236,8 @@ Certificate make_certificate(Problem &problem, const LinearBasis &basis, const R
   if (!problem.free_bodies().empty()) return {{}, "contact alone holds a body"};
   if (!model.contact.trace_dofs.empty())
     return {{}, "the model knows displacements near contact alone"};
+  if (is_told_by_law(problem, model)) return {told_by_law(problem, basis), ""};
   CertificateModel certificate;
-  if (is_told_by_law(problem, model)) {
-    certificate.by_law = true;
-    certificate.left_of_loads =
-        left_of_loads(problem, box_centre(problem.scene().parameters), basis);
-    return {std::move(certificate), ""};
-  }
   LiftedRows rows = lifted_rows(problem.contact(), model);
   certificate.own = std::move(rows.own);
   certificate.dofs = pushed_dofs(problem, model, training);

@@ -6,6 +6,7 @@ seen as full solves do, forces and all; two ranks make the same one; the files f
 fields of bodies and surfaces in space. Bounds and indicators are the errors of a model of few functions. The case that rbvi new writes of a geometry has no defect.
 """
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -15,8 +16,9 @@ BLOCK = ["-case", Path(__file__).parent / "solid_block/case.yaml"]
 CASE = ["-case", CASES / "rigid_ball/case.yaml", "-set", "mesh.set.size=2"]
 FREE = ["-parameters", "radius,indentation,offset_x,shear"]
 UNSEEN = ("0.83,0.07,-0.04,0.02", "1.21,0.045,0.08,0.005")
+BENT = ["-parameters", "indentation,offset_x,shear"]
 ACCURATE = 1e-6  # of each output; measured at 5 random points: 2e-7 at most
-SHARP = 1.5  # of a bound over the error; 1 but for what the law leaves
+SHARP = 2  # of a bound over the error; 1 where the law tells it, else 1.6 at most
 
 
 def called(*command):
@@ -61,17 +63,32 @@ def bounds(tool, out, kind):
     sys.exit(f"{out.name}: no {kind} of u in\n{said}")
 
 
+def bent_ball(folder):
+    """The half-ball whose flat side is bent, which no rigid motion carries: a load that is an exact sum."""
+    folder.mkdir(parents=True, exist_ok=True)
+    shutil.copy(CASES / "rigid_ball/half_ball.geo", folder)
+    text = (CASES / "rigid_ball/case.yaml").read_text(encoding="utf-8")
+    rigid, bent = "ux: shear, uy: 0, uz: -indentation", "ux: shear*(1 + x), uy: 0.5*shear*y, uz: -indentation*(1 + 0.3*x)"
+    if rigid not in text:
+        sys.exit("the flat side of rigid_ball is imposed in other words")
+    (folder / "case.yaml").write_text(text.replace(rigid, bent), encoding="utf-8")
+    return ["-case", folder / "case.yaml", *CASE[2:]]
+
+
 def main(programs, out):
     tool, online = programs / "rbvi", programs / "rbvi-online"
+    shutil.rmtree(out, ignore_errors=True)
     for ranks in (1, 2):
         called("mpirun", "-n", ranks, tool, "offline", *CASE, *FREE, "-train", "random:60:1", "-valid",
                "random:2:2", "-out", out / f"np{ranks}")
     called(tool, "verify", "-out", out / "np2")
-    for friction, kind in ((0, "Bounds"), (0.2, "Indicators")): # of modes alone, 3e-2 to 3e-1 off
-        run = out / f"modes_{friction}"
-        called(tool, "offline", *CASE, *FREE, "-friction", friction, "-train", "random:8:1", "-valid", "random:2:2",
-               "-response_tolerance", "0", "-certify", "-out", run)
-        bounds(tool, run, kind)
+    bent = bent_ball(out / "bent")
+    for friction, kind in ((0, "Bounds"), (0.2, "Indicators")):  # of modes alone, 3e-2 to 3e-1 off
+        for name, case, free in (("modes", CASE, FREE), ("bent", bent, BENT)):
+            run = out / f"{name}_{friction}"
+            called(tool, "offline", *case, *free, "-friction", friction, "-train", "random:8:1", "-valid", "random:2:2",
+                   "-response_tolerance", "0", "-certify", "-out", run)
+            bounds(tool, run, kind)
     for mu in UNSEEN:
         full = numbers(called(tool, "solve", *CASE, *FREE, "-mu", mu))
         one, two = (numbers(called(online, out / f"np{ranks}/model.h5", "--mu", mu)) for ranks in (1, 2))

@@ -241,11 +241,11 @@ struct CertificateReference {
 /// unless the law tells them.
 struct CertificateModel {
   /// Multipliers are those of the whole body: mu only scales A, G is evaluated, and the condensed
-  /// operator is exact and known at every node. Nothing more is needed than what the basis leaves
-  /// of A_1^-1 F, in coordinates that are orthonormal in A_1 (A = common coefficient times A_1):
-  /// any x terms of F.
+  /// operator is exact and known at every node. Nothing more is needed than A_1^-1 F and what the
+  /// basis leaves of it, in coordinates that are orthonormal in A_1 (A = common coefficient times
+  /// A_1): terms of F x terms of F.
   bool by_law = false;
-  Matrix left_of_loads;
+  Matrix of_loads, left_of_loads;
   std::vector<CertificateReference> references;
   std::vector<int> dofs; ///< contact dofs that multipliers push, rising
   std::vector<int> own;  ///< of each dual dof the function that lifts its gap, -1: none does
