@@ -10,6 +10,7 @@
 #include "lazy_columns.hpp"
 #include "rbvi/method/friction.hpp"
 
+#include <optional>
 #include <string>
 
 namespace rbvi::friction {
