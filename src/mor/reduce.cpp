@@ -193,8 +193,7 @@ StageRow bounds_row(const Scene &scene, const ReduceOptions &, const Reduction *
   if (made == nullptr) return {stage::bounds, "norms of the residual at reference parameters"};
   if (!made->no_bounds.empty()) return {stage::bounds, "none: " + made->no_bounds};
   if (made->model.certificate.by_law)
-    return {stage::bounds,
-            "energies of the law and of the displacement: nothing is stored for them"};
+    return {stage::bounds, "energies of the law and of the displacement"};
   const std::vector<CertificateReference> &references = made->model.certificate.references;
   double numbers = static_cast<double>(made->model.certificate.lifting_trace.size());
   for (const CertificateReference &at : references)

@@ -6,7 +6,7 @@
 // Where the law is that of the whole body at all nodes (CertificateModel::by_law), l_N is its
 // multiplier, and what u_N lacks of the body's answer to f and l_N tells the difference of the
 // energies of both: no residual is formed, and no gap is lifted. Being a difference, such a bound
-// ends at 1e-8 of |u_N|.
+// ends at 1e-7 of |u_N|.
 #pragma once
 
 #include "rbvi/contact/contact.hpp"
