@@ -220,11 +220,16 @@ template <class Store, class Operator>
 void list_condensed(const Store &store, Operator &condensed, Index size, Index blocks,
                     Index contact) {
   const bool some = condensed.terms.size() > 0;
-  list_records(store, "law/axes", condensed.axes, [](auto &axis) {
-    return std::tie(axis.parameter, axis.lower, axis.upper, axis.points);
-  });
+  auto &grid = condensed.grid;
+  const Index axes = std::ssize(grid.axes);
+  list_records(store, "law/axes", grid.axes,
+               [](auto &axis) { return std::tie(axis.parameter, axis.lower, axis.upper); });
+  store("law/abscissae", grid.abscissae);
+  store("law/points", grid.points, Indices{std::max<Index>(1, grid.abscissae.size())});
+  store.ask("law/points do not fit",
+            [&] { return axes == 0 ? grid.points.empty() : std::ssize(grid.points) % axes == 0; });
   store("law/error", condensed.error);
-  store("law/shape", condensed.shape, Shape{any_size, some ? grid_size(condensed.axes) : any_size});
+  store("law/shape", condensed.shape, Shape{any_size, some ? grid.size() : any_size});
   store("law/dofs", condensed.dofs, Indices{some ? contact : std::numeric_limits<int>::max()});
   if constexpr (Store::checks) {
     const Index terms = blocks * condensed.shape.rows();
@@ -252,8 +257,8 @@ template <class Store, class Model> void list_law(const Store &store, Model &mod
   list_condensed(store, law.condensed, evaluates ? std::ssize(law.condensed.dofs) : m,
                  evaluates ? 1 : b * (b + 1) / 2, contact);
   store.ask("law/axes do not fit", [&] {
-    return std::ranges::all_of(law.condensed.axes, [&](const ChebyshevAxis &axis) {
-      return axis.points > 0 && axis.lower < axis.upper && axis.parameter >= 0 &&
+    return std::ranges::all_of(law.condensed.grid.axes, [&](const GridAxis &axis) {
+      return axis.lower < axis.upper && axis.parameter >= 0 &&
              axis.parameter < std::ssize(model.scene.parameters.all);
     });
   });

@@ -79,7 +79,7 @@ void print_terms_of_rows(std::ostream &out, int terms, const TermsApart &apart) 
 void print_law(std::ostream &out, const NodalLaw &law, int multipliers) {
   label(out, "condensed operator")
       << multipliers << " x " << multipliers << ", " << law.condensed.terms.cols() << " terms";
-  if (!law.condensed.axes.empty()) out << " (interpolation error " << law.condensed.error << ')';
+  if (!law.condensed.grid.axes.empty()) out << " (interpolation error " << law.condensed.error << ')';
   out << '\n';
 }
 

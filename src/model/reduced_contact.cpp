@@ -14,7 +14,7 @@ namespace {
 /// The coefficient of each term of one block of the condensed operator.
 Vector block_coefficients(const CondensedOperator &condensed, const Scene &scene,
                           const FullMu &mu) {
-  return condensed.shape * grid_weights(scene, condensed.axes, mu) /
+  return condensed.shape * grid_functions(scene, condensed.grid, mu) /
          common_coefficient(scene.a, scene.parameters, mu);
 }
 

@@ -17,6 +17,7 @@ namespace rbvi {
 namespace {
 
 constexpr std::size_t at_a_time = 100, most_queries = 10000; ///< queries
+constexpr int most_factorisations = 100;                     ///< for responses where A changes
 
 // Parts of a tolerance, for what is not taken, what comes between answers, what few directions
 // leave.
@@ -72,13 +73,18 @@ bool take_answers(const Problem &problem, const ReducedModel &model, Index size,
 
 } // namespace
 
+bool responses_await(double loads, double dofs, bool varies, const CondensedOptions &options) {
+  constexpr double many = 200; // where A changes: ten times as many functions to choose from
+  return options.responses > 0 && (loads * dofs > options.large_fields || (varies && loads > many));
+}
+
 bool awaits_answers(const Problem &problem, const CondensedLoads &loads,
                     const CondensedOptions &options) {
-  const double numbers = static_cast<double>(loads.joining()) * problem.dofs().total_free;
   const Scene &scene = problem.scene();
-  const bool scales = parameters_beside_common(scene.a, scene.parameters).empty(); // or is constant
-  return (!loads.units.empty() || loads.join) && scales && options.responses > 0 &&
-         numbers > options.large_fields;
+  const bool varies = !parameters_beside_common(scene.a, scene.parameters).empty();
+  return (!loads.units.empty() || loads.join) &&
+         responses_await(static_cast<double>(loads.joining()), problem.dofs().total_free, varies,
+                         options);
 }
 
 ResponseDirections::ResponseDirections(const Matrix &compliance) {
@@ -124,11 +130,19 @@ Matrix ResponseDirections::coefficients(double tolerance) const {
   return solve_upper(root_, space_.columns() * leading_vectors(parts_, tolerance * largest_));
 }
 
-int append_answered_responses(Problem &problem, const CondensedLoads &loads,
-                              const ReducedModel &model, double tolerance, LinearBasis &modes) {
+Matrix ResponseDirections::weighted_coefficients(double tolerance) const {
+  const Matrix leading = leading_vectors(parts_, tolerance * largest_);
+  const Vector sizes = (leading.transpose() * parts_).rowwise().lpNorm<Eigen::Infinity>();
+  return solve_upper(root_, space_.columns() * leading * sizes.asDiagonal());
+}
+
+ResponseSpace append_answered_responses(Problem &problem, const CondensedLoads &loads,
+                                        const ReducedModel &model, double tolerance,
+                                        LinearBasis &modes) {
   const CondensedOperator &condensed = model.contact.law->condensed;
   const Index size = loads.columns.cols();
-  ResponseDirections directions((condensed.terms * condensed.shape).reshaped(size, size));
+  // At the first point of the grid all functions but the first are zero.
+  ResponseDirections directions((condensed.terms * condensed.shape.col(0)).reshaped(size, size));
   const Scene &scene = problem.scene();
   const bool scales = !constant_stiffness(scene);
   const auto multipliers = [&](const ReducedAnswer &answer) {
@@ -144,12 +158,17 @@ int append_answered_responses(Problem &problem, const CondensedLoads &loads,
   if (!answered) throw failure("the law of contact has no answer at any training mu");
   const Mu any(model.contact.law->starts_mu.col(0).begin(),
                model.contact.law->starts_mu.col(0).end());
+  if (!condensed.grid.axes.empty()) {
+    const ResponseSearch search{condensed.grid.axes, expand(scene.parameters, any), tolerance,
+                                most_factorisations};
+    return append_responses(problem, loads.columns,
+                            directions.weighted_coefficients(of_few * tolerance), search, modes);
+  }
   ResponseSolver body(problem.assemble(any).a, problem.trace(), "hf_");
   constexpr double dependent = 1e-9; // of a response's own norm: the modes hold it
-  return static_cast<int>(append_fields(body,
-                                        loads.columns * directions.coefficients(of_few * tolerance),
-                                        modes, dependent, nullptr)
-                              .size());
+  const auto appended = append_fields(
+      body, loads.columns * directions.coefficients(of_few * tolerance), modes, dependent, nullptr);
+  return {.points = 1, .functions = static_cast<int>(appended.size())};
 }
 
 namespace {

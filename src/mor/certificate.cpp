@@ -181,7 +181,7 @@ CertificateReference reference_at(Problem &problem, const Mu &mu, Mat basis, con
 /// Whether CertificateModel::by_law holds.
 bool is_told_by_law(const Problem &problem, const ReducedModel &model) {
   const ContactModel &contact = model.contact;
-  return contact.law && !contact.law->on_functions() && contact.law->condensed.axes.empty() &&
+  return contact.law && !contact.law->on_functions() && contact.law->condensed.grid.axes.empty() &&
          contact.b.size() == 1 && model.evaluates_gap() && model.body.a_change.rank() == 0 &&
          model.body.a.size() == model.body.a.exact &&
          parameters_beside_common(problem.scene().a, problem.scene().parameters).empty() &&

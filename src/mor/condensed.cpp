@@ -1,9 +1,9 @@
 #include "rbvi/mor/condensed.hpp"
 
 #include "condensed_loads.hpp"
+#include "growing_grid.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
-#include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/mor/orthonormal.hpp"
 #include "rbvi/mor/response_space.hpp"
 #include "rbvi/par/collective.hpp"
@@ -14,10 +14,9 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
-#include <numeric>
-#include <set>
 
 namespace rbvi {
 
@@ -29,14 +28,14 @@ namespace {
 constexpr double response_tolerance = 5e-7;
 constexpr int most_responses = 200; ///< factorisations
 
-/// The free parameters of A over its common coefficient, each with so many points.
-std::vector<ChebyshevAxis> axes_of(const Scene &scene, int points) {
-  std::vector<ChebyshevAxis> axes;
+/// The free parameters of A over its common coefficient.
+std::vector<GridAxis> axes_of(const Scene &scene) {
+  std::vector<GridAxis> axes;
   for (const int i : parameters_beside_common(scene.a, scene.parameters)) {
     const Parameter &p = scene.parameters.all[i];
     const auto [lower, upper] =
         std::minmax({coordinate_at(scene, i, p.lower), coordinate_at(scene, i, p.upper)});
-    axes.push_back({i, lower, upper, points});
+    axes.push_back({i, lower, upper});
   }
   return axes;
 }
@@ -55,10 +54,19 @@ Vector blocks_of(const Matrix &h, Index m) {
   return blocks;
 }
 
-/// As few terms as hold the values at all grid points, columns * coordinates with orthonormal
-/// columns, to the tolerance. `columns`: (blocks * `square`) x any number.
+/// Rounds the entries of a term, which counts `size` times, to multiples of a power of two by which
+/// the values move by so much: digits that mean nothing need no room in a file.
+void round_entries(Eigen::Ref<Matrix> term, double size, double allowed) {
+  const double entries = static_cast<double>(term.size());
+  const double step = std::exp2(std::floor(std::log2(allowed / size * std::sqrt(12 / entries))));
+  term = (term.array() / step).round() * step;
+}
+
+/// As few terms as hold the coefficients of all points of the grid, columns * coordinates with
+/// orthonormal columns, to the tolerance. `columns`: (blocks * `square`) x any number.
 void compress(const Matrix &columns, const Matrix &coordinates, Index square, double tolerance,
               CondensedOperator &condensed) {
+  constexpr double rounded = 1e-3; // it is rough, and multipliers see what is
   const Index blocks = columns.rows() / square;
   const SmallSvd svd = small_svd(coordinates.transpose()); // tall: of no more than its R
   Index count = 1;
@@ -69,19 +77,10 @@ void compress(const Matrix &columns, const Matrix &coordinates, Index square, do
   for (Index block = 0; block < blocks; ++block)
     condensed.terms.middleCols(block * count, count) =
         columns.middleRows(block * square, square) * svd.right.leftCols(count);
-}
-
-/// The free parameters at each point of a grid over those of A, the others as in `all_parameters`.
-std::vector<Mu> free_grid(const Scene &scene, const std::vector<ChebyshevAxis> &axes,
-                          const FullMu &all_parameters) {
-  std::vector<Mu> result;
-  for (const FullMu &point : grid_points(scene, axes, all_parameters)) {
-    Mu mu;
-    for (const int i : scene.parameters.free)
-      mu.push_back(point[i]);
-    result.push_back(std::move(mu));
-  }
-  return result;
+  for (Index j = 0; j < count && coordinates.cols() > 1; ++j)
+    for (Index block = 0; block < blocks; ++block)
+      round_entries(condensed.terms.col(block * count + j), svd.values[j],
+                    rounded * tolerance * svd.values[0]);
 }
 
 /// Combinations of the multipliers, as large as those of `multipliers` (m x P) make them, and at
@@ -100,15 +99,14 @@ Matrix weights_of(const Matrix &multipliers) {
 class FactorisedResponses {
 public:
   FactorisedResponses(Problem &problem, const CondensedLoads &loads, double responses,
-                      LinearBasis *modes, std::vector<Mu> ends)
-      : problem_(problem), of_(loads), responses_(responses), modes_(modes),
-        ends_(std::move(ends)) {}
+                      LinearBasis *modes)
+      : problem_(problem), of_(loads), responses_(responses), modes_(modes) {}
 
-  /// Collective.
-  Vector blocks_at(const Mu &mu) {
+  /// `at_end`: A is at an end or in the middle of each of its free parameters. Collective.
+  Vector blocks_at(const Mu &mu, bool at_end) {
     ++factorisations;
     const Mat a = problem_.assemble(mu).a;
-    if (modes_ != nullptr && std::find(ends_.begin(), ends_.end(), mu) != ends_.end()) {
+    if (modes_ != nullptr && at_end) {
       ResponseSolver solver(a, problem_.trace(), "hf_");
       if (of_.join)
         return blocks_of(of_.columns.transpose() * append(solver, of_.columns), of_.size);
@@ -134,86 +132,99 @@ private:
   const CondensedLoads &of_;
   double responses_;
   LinearBasis *modes_;
-  std::vector<Mu> ends_;
 };
 
-/// Values at points, a few at a time: a grid has thousands of them, of as many numbers as pairs of
-/// multipliers, in the span of few.
-class SpannedValues {
+/// The coefficients of a sparse grid that grows: of as many numbers as pairs of multipliers, in the
+/// span of few.
+class SpannedSurplus {
 public:
-  explicit SpannedValues(double tolerance) : tolerance_(tolerance) {}
+  SpannedSurplus(const Scene &scene, SparseGrid &grid, const FullMu &all, double tolerance)
+      : scene_(scene), grid_(grid), all_(all), tolerance_(tolerance) {}
 
-  /// At the points that are not there yet. `blocks_at`: a column for each of some mu. Collective.
-  template <class BlocksAt>
-  void add(const std::vector<Mu> &grid, bool reports, BlocksAt &&blocks_at) {
-    constexpr std::size_t width = 16; // points at a time
-    std::vector<Mu> added;
-    std::ranges::copy_if(grid, std::back_inserter(added),
-                         [&](const Mu &mu) { return !known_.contains(mu); });
-    Progress progress("points of the condensed operator", static_cast<int>(added.size()), reports);
-    const double start = MPI_Wtime();
-    for (std::size_t first = 0; first < added.size(); first += width) {
-      const std::size_t end = std::min(first + width, added.size());
-      const std::vector<Mu> part(added.begin() + static_cast<std::ptrdiff_t>(first),
-                                 added.begin() + static_cast<std::ptrdiff_t>(end));
-      const Matrix blocks = blocks_at(part);
-      span_.append(blocks, tolerance_);
-      const Matrix coordinates = span_.coordinates(blocks);
-      for (std::size_t k = 0; k < part.size(); ++k)
-        known_.emplace(part[k], coordinates.col(static_cast<Index>(k)));
-      const double left = static_cast<double>(added.size() - end) / static_cast<double>(end);
-      if (progress.due()) progress.update(static_cast<int>(end), left * (MPI_Wtime() - start));
-    }
+  /// `blocks`: values at some points, a column for each, none of which is before another one along
+  /// all axes. Returns what the interpolant so far misses there, relative to the largest value.
+  Vector add(const std::vector<GridPoint> &points, const Matrix &blocks) {
+    span_.append(blocks, tolerance_);
+    Matrix surplus = span_.coordinates(blocks);
+    largest_ = std::max(largest_, surplus.colwise().norm().maxCoeff());
+    const Index before = surplus_.cols();
+    for (std::size_t k = 0; k < points.size() && before > 0; ++k)
+      surplus.col(static_cast<Index>(k)).head(surplus_.rows()) -=
+          surplus_ * grid_functions(scene_, grid_, parameters_at(scene_, grid_, points[k], all_));
+    for (const GridPoint &point : points)
+      grid_.append(point);
+    const Index known = surplus_.rows();
+    surplus_.conservativeResize(surplus.rows(), before + surplus.cols());
+    surplus_.bottomLeftCorner(surplus.rows() - known, before).setZero();
+    surplus_.rightCols(surplus.cols()) = surplus;
+    return surplus.colwise().norm().transpose() / largest_;
   }
   const Matrix &columns() const { return span_.columns(); }
-  /// columns() x points.
-  Matrix coordinates_at(const std::vector<Mu> &grid) const {
-    Matrix result = Matrix::Zero(columns().cols(), std::ssize(grid));
-    for (std::size_t k = 0; k < grid.size(); ++k) {
-      const Vector &known = known_.at(grid[k]);
-      result.col(static_cast<Index>(k)).head(known.size()) = known;
-    }
-    return result;
-  }
+  const Matrix &coordinates() const { return surplus_; } ///< columns() x points
 
 private:
-  double tolerance_;
+  const Scene &scene_;
+  SparseGrid &grid_;
+  const FullMu &all_;
   OrthonormalColumns span_;
-  std::map<Mu, Vector> known_; // a finer grid holds the points of the coarser one, bit by bit
+  Matrix surplus_;
+  double tolerance_, largest_ = 0;
 };
 
-/// Values at a grid that is made finer along the axes that need it until the interpolant is right
-/// to the tolerance, or has the most points along them: their coordinates in the columns of
-/// `known`. `blocks_at`: at some mu, a column for each, over the common coefficient of A^-1.
-/// Collective.
+/// Those that miss more than the tolerance, with no more than so many points along an axis.
+std::vector<GridPoint> wanted_points(const std::map<GridPoint, double> &candidates,
+                                     const CondensedOptions &options) {
+  std::vector<GridPoint> wanted;
+  for (const auto &[point, remainder] : candidates)
+    if (remainder > options.tolerance &&
+        std::ranges::all_of(point, [&](int number) { return number < options.max_points; }))
+      wanted.push_back(point);
+  return wanted;
+}
+
+/// Interpolates the values over the common coefficient of A^-1 on a sparse grid that grows until
+/// what its next points miss is below the tolerance, or there are the most points along an axis.
+/// `blocks_at`: at some mu and their points, a column for each. Collective.
 template <class BlocksAt>
-Matrix values_on_grid(const Problem &problem, const FullMu &all, const CondensedOptions &options,
-                      CondensedOperator &condensed, SpannedValues &known, BlocksAt &&blocks_at) {
+void interpolate(const Problem &problem, const CondensedLoads &loads, const FullMu &all,
+                 const CondensedOptions &options, CondensedOperator &condensed,
+                 BlocksAt &&blocks_at) {
+  constexpr double left_out = 1e-2; // of the tolerance
+  constexpr std::size_t width = 16; // points at a time
   const Scene &scene = problem.scene();
-  condensed.axes = axes_of(scene, 5);
+  condensed.grid = {axes_of(scene), leja_points(options.max_points), {}};
+  GrowingGrid growing(condensed.grid.axes.size());
+  SpannedSurplus known(scene, condensed.grid, all, left_out * options.tolerance);
+  Progress progress("points of the condensed operator", 0, rank_of(problem.comm()) == 0);
   while (true) {
-    const std::vector<Mu> grid = free_grid(scene, condensed.axes, all);
-    known.add(grid, rank_of(problem.comm()) == 0, blocks_at);
-    Matrix coordinates = known.coordinates_at(grid);
-    const Vector tails = chebyshev_tails(condensed.axes, coordinates);
-    condensed.error = tails.size() > 0 ? tails.maxCoeff() : 0;
-    bool finer = false;
-    for (std::size_t d = 0; d < condensed.axes.size(); ++d) {
-      ChebyshevAxis &axis = condensed.axes[d];
-      if (tails[d] <= options.tolerance || 2 * axis.points - 1 > options.max_points) continue;
-      axis.points = 2 * axis.points - 1;
-      finer = true;
-    }
-    if (finer) continue;
-    if (condensed.error > options.tolerance && rank_of(problem.comm()) == 0)
-      std::fprintf(
-          stderr,
-          "rbvi: warning: the condensed operator is interpolated to %.1e only by %d points "
-          "along a parameter of the stiffness: narrow its bounds, or raise "
-          "-condensed_tolerance\n",
-          condensed.error, options.max_points);
-    return coordinates;
+    const std::map<GridPoint, double> candidates = growing.candidates();
+    std::vector<GridPoint> wanted = wanted_points(candidates, options);
+    condensed.error = 0;
+    for (const auto &[point, remainder] : candidates)
+      condensed.error = std::max(condensed.error, remainder);
+    if (wanted.empty()) break;
+    wanted.resize(std::min(wanted.size(), width));
+    std::vector<Mu> set;
+    for (const GridPoint &point : wanted)
+      set.push_back(free_parameters_at(scene, condensed.grid, point, all));
+    const Vector missed = known.add(wanted, blocks_at(set, wanted));
+    for (std::size_t k = 0; k < wanted.size(); ++k)
+      growing.take(wanted[k], missed[static_cast<Index>(k)]);
+    progress.update(static_cast<int>(condensed.grid.size()), 0,
+                    "the last ones missed " + short_number(missed.maxCoeff()) + ", wanted " +
+                        short_number(options.tolerance) + ", ");
   }
+  const auto last = std::ranges::max_element(condensed.grid.points);
+  condensed.grid.abscissae.conservativeResize(last == condensed.grid.points.end() ? 1 : *last + 1);
+  compress(known.columns(), known.coordinates(), loads.size * loads.size, options.tolerance,
+           condensed);
+  condensed.dofs = loads.units;
+  if (condensed.error > options.tolerance && rank_of(problem.comm()) == 0)
+    std::fprintf(stderr,
+                 "rbvi: warning: the condensed operator is interpolated to %.1e only by %d points "
+                 "along a parameter of the stiffness: narrow its bounds, or raise "
+                 "-condensed_tolerance\n",
+                 condensed.error, options.max_points);
 }
 
 } // namespace
@@ -234,7 +245,7 @@ int add_load_responses(Problem &problem, const AffineOperators &affine,
   for (const Handle<Vec> &exact : problem.f_terms().exact)
     loads.push_back(exact.get());
   const Scene &scene = problem.scene();
-  const ResponseSearch search{axes_of(scene, 1), expand(scene.parameters, training.front()),
+  const ResponseSearch search{axes_of(scene), expand(scene.parameters, training.front()),
                               load_tolerance, most_responses};
   return append_load_responses(problem, loads, search, modes).functions;
 }
@@ -252,46 +263,39 @@ Condensation condense(Problem &problem, const CondensedLoads &loads, const FullM
   };
   Condensation result;
   CondensedOperator &condensed = result.condensed;
-  constexpr double left_out = 1e-2; // of the tolerance
-  SpannedValues known(left_out * options.tolerance);
-  Matrix coordinates;
   if (appends && loads.join && split.mapped.empty() && split.exact.size() > 2) {
     const ResponseSpace space =
         append_responses(problem, loads.columns, weights_of(multipliers),
-                         {axes_of(scene, 1), all, response_tolerance, most_responses}, *modes);
+                         {axes_of(scene), all, response_tolerance, most_responses}, *modes);
     const ReducedResponses reduced(problem, loads.columns, *modes);
-    coordinates =
-        values_on_grid(problem, all, options, condensed, known, [&](const std::vector<Mu> &set) {
-          Matrix blocks = Matrix::Zero(size * size, std::ssize(set));
-          take_turns(problem.comm(), set.size(), [&](std::size_t k) {
-            blocks.col(static_cast<Index>(k)) =
-                common(set[k]) *
-                blocks_of(reduced.compliance(expand(scene.parameters, set[k])), size);
-          });
-          for (auto column : blocks.colwise())
-            over_ranks(problem.comm(), MPI_SUM, column);
-          return blocks;
-        });
+    interpolate(problem, loads, all, options, condensed, [&](const std::vector<Mu> &set, auto &) {
+      Matrix blocks = Matrix::Zero(size * size, std::ssize(set));
+      take_turns(problem.comm(), set.size(), [&](std::size_t k) {
+        blocks.col(static_cast<Index>(k)) =
+            common(set[k]) * blocks_of(reduced.compliance(expand(scene.parameters, set[k])), size);
+      });
+      for (auto column : blocks.colwise())
+        over_ranks(problem.comm(), MPI_SUM, column);
+      return blocks;
+    });
     result.responses = space.functions;
     result.factorisations = space.points;
-  } else {
-    FactorisedResponses exact(problem, loads, options.responses, appends ? modes : nullptr,
-                              free_grid(scene, axes_of(scene, 3), all));
-    coordinates =
-        values_on_grid(problem, all, options, condensed, known, [&](const std::vector<Mu> &set) {
-          Matrix blocks;
-          for (std::size_t k = 0; k < set.size(); ++k) {
-            const Vector column = common(set[k]) * exact.blocks_at(set[k]);
-            blocks.conservativeResize(column.size(), std::ssize(set));
-            blocks.col(static_cast<Index>(k)) = column;
-          }
-          return blocks;
-        });
-    result.responses = exact.appended;
-    result.factorisations = exact.factorisations;
+    return result;
   }
-  condensed.dofs = loads.units;
-  compress(known.columns(), coordinates, size * size, options.tolerance, condensed);
+  FactorisedResponses exact(problem, loads, options.responses, appends ? modes : nullptr);
+  interpolate(problem, loads, all, options, condensed,
+              [&](const std::vector<Mu> &set, const std::vector<GridPoint> &points) {
+                Matrix blocks;
+                for (std::size_t k = 0; k < set.size(); ++k) {
+                  const bool at_end = std::ranges::all_of(points[k], [](int i) { return i <= 2; });
+                  const Vector column = common(set[k]) * exact.blocks_at(set[k], at_end);
+                  blocks.conservativeResize(column.size(), std::ssize(set));
+                  blocks.col(static_cast<Index>(k)) = column;
+                }
+                return blocks;
+              });
+  result.responses = exact.appended;
+  result.factorisations = exact.factorisations;
   return result;
 }
 

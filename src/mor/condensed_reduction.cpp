@@ -17,7 +17,7 @@ namespace {
 StageRow condensation_row(const Scene &, const ReduceOptions &options, const Reduction *made) {
   if (made == nullptr)
     return {stage::condensation,
-            "the condensed operator, at the Chebyshev points of the parameters of A to " +
+            "the condensed operator, on a sparse grid over the parameters of A to " +
                 short_number(options.condensed.tolerance)};
   const CondensedOperator &condensed = made->bases.condensed;
   std::string what = counted(made->bases.nodal_dual.cols(), "multiplier") +
@@ -25,7 +25,7 @@ StageRow condensation_row(const Scene &, const ReduceOptions &options, const Red
                      counted(made->bases.responses, "displacement") + " under unit loads, " +
                      counted(made->bases.factorisations, "factorisation") + ", " +
                      counted(condensed.terms.cols(), "term");
-  if (!condensed.axes.empty()) what += ", error " + short_number(condensed.error);
+  if (!condensed.grid.axes.empty()) what += ", error " + short_number(condensed.error);
   return {stage::condensation, what};
 }
 
@@ -58,12 +58,12 @@ void make_condensed(Reducing &at) {
 
 StageNeed condensation_need(const ReductionSize &size) {
   const auto &[samples, dofs, contact, multipliers, ranks, axes, points, square, entries, factor,
-               of_a, of_f, of_b, joined, modes, model, self_check] = size;
+               columns, factorisation, of_a, of_f, of_b, joined, modes, model, self_check] = size;
   const bool varies = axes > 0;
   const double factorisations = of_a > 0 ? points : std::min(points, span_factorisations);
-  return {.numbers = size.responses(contact) + (varies ? 6 : 2) * dofs * modes / ranks +
+  return {.numbers = size.responses(columns) + (varies ? 6 : 2) * dofs * modes / ranks +
                      square * (varies ? std::min(points, 3 * most_terms) : 3),
-          .seconds = factorisations * factor * (factor_seconds + contact / ranks * column_seconds)};
+          .seconds = factorisations * (factorisation + factor * columns / ranks * column_seconds)};
 }
 
 /// The training multipliers that `project` has left in the model become what a query starts from.
@@ -86,9 +86,10 @@ void add_starts(ReducedModel &model, const Problem &problem) {
 void choose_responses(Reducing &at) {
   ReducedBases &bases = at.made.bases;
   if (bases.awaiting) {
-    bases.responses += append_answered_responses(at.problem, *bases.awaiting, at.made.model,
-                                                 answered_tolerance, bases.pod.basis);
-    ++bases.factorisations;
+    const ResponseSpace appended = append_answered_responses(
+        at.problem, *bases.awaiting, at.made.model, answered_tolerance, bases.pod.basis);
+    bases.responses += appended.functions;
+    bases.factorisations += appended.points;
     bases.awaiting.reset();
     at.basis_changed = true;
   } else if (factorises_for_displacements(at.problem, at.made.model)) {
@@ -139,13 +140,15 @@ std::vector<ReductionStage> law_at_nodes(const Scene &scene, const ReduceOptions
 
 Joining responses_join(const Scene &scene, const ReduceOptions &options,
                        const ReductionSize &size) {
-  constexpr double few_responses = 150; // where those to answers alone join the modes
+  // Where those to answers alone join the modes, with one A and with more.
+  constexpr double few_responses = 150, of_more = 3;
   const double stored = size.square * std::min(size.points, most_terms);
   if (options.condensed.responses == 0) return {0, stored};
+  if (responses_await(size.loads, size.dofs, size.axes > 0, options.condensed))
+    return {few_responses * (size.axes > 0 ? of_more : 1), stored};
   if (size.axes > 0)
     return {size.contact * (split_sum(scene.a, scene.parameters).mapped.empty() ? 1 : 4), stored};
-  const bool large = size.contact * size.dofs > options.condensed.large_fields;
-  return {large ? few_responses : size.contact / 2, stored};
+  return {size.contact / 2, stored};
 }
 
 } // namespace

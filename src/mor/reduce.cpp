@@ -255,9 +255,8 @@ void add_bounds(const ReduceOptions &options, std::vector<ReductionStage> &list)
                   [](const ReductionSize &size) {
                     const double loads = 3 * (size.modes + size.multipliers) + size.contact;
                     return StageNeed{.numbers = 2 * size.dofs * loads / size.ranks + size.factor,
-                                     .seconds =
-                                         size.factor *
-                                         (factor_seconds + loads / size.ranks * column_seconds)};
+                                     .seconds = size.factorisation +
+                                                size.factor * loads / size.ranks * column_seconds};
                   },
                   "-certify no"});
 }
@@ -273,9 +272,9 @@ ReductionStage self_check_stage() {
           }};
 }
 
-double ReductionSize::responses(double loads) const {
+double ReductionSize::responses(double count) const {
   constexpr double at_once = 128;
-  return factor + 2 * dofs * std::min(at_once, loads / ranks);
+  return factor + 2 * dofs * std::min(at_once, count / ranks);
 }
 
 namespace {

@@ -1,5 +1,6 @@
 #include "rbvi/mor/response_space.hpp"
 
+#include "growing_grid.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/par/collective.hpp"
@@ -16,8 +17,6 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <map>
-#include <numbers>
 #include <optional>
 #include <random>
 
@@ -25,75 +24,13 @@ namespace rbvi {
 
 namespace {
 
-/// Leja points on [-1, 1] from the middle on: each the farthest from those before, by the product
-/// of the distances. The first n are good points of interpolation for every n.
-std::vector<double> leja_points(int count) {
-  constexpr int candidates = 512;
-  std::vector<double> points{0};
-  while (std::ssize(points) < count) {
-    double best = 0, farthest = -1;
-    for (int k = 0; k <= candidates; ++k) {
-      const double x = std::cos(std::numbers::pi * k / candidates);
-      double product = 1;
-      for (const double point : points)
-        product *= std::abs(x - point);
-      if (product > farthest * (1 + 1e-12)) {
-        best = x;
-        farthest = product;
-      }
-    }
-    points.push_back(best);
-  }
-  return points;
+/// The point of which most is expected.
+std::pair<GridPoint, double> next_of(const GrowingGrid &grid) {
+  std::pair<GridPoint, double> best{{}, 0};
+  for (const auto &[point, expected] : grid.candidates())
+    if (expected > best.second) best = {point, expected};
+  return best;
 }
-
-using MultiIndex = std::vector<int>; ///< number of the Leja point along each axis
-
-Mu point_at(const Scene &scene, const std::vector<ChebyshevAxis> &axes, const MultiIndex &index,
-            const std::vector<double> &leja, FullMu all) {
-  for (std::size_t d = 0; d < axes.size(); ++d) {
-    const ChebyshevAxis &axis = axes[d];
-    const double x = (axis.lower + axis.upper) / 2 + (axis.upper - axis.lower) / 2 * leja[index[d]];
-    all[axis.parameter] = value_back(scene, axis.parameter, x);
-  }
-  Mu mu;
-  for (const int i : scene.parameters.free)
-    mu.push_back(all[i]);
-  return mu;
-}
-
-/// The points taken, by their remainders, and what may follow them.
-struct SparseGrid {
-  std::map<MultiIndex, double> taken;
-
-  /// The largest remainder among the points before it along each axis; nothing where one of them
-  /// has not been taken.
-  std::optional<double> expected(const MultiIndex &index) const {
-    double largest = 0;
-    for (std::size_t d = 0; d < index.size(); ++d) {
-      if (index[d] == 0) continue;
-      MultiIndex before = index;
-      --before[d];
-      const auto found = taken.find(before);
-      if (found == taken.end()) return std::nullopt;
-      largest = std::max(largest, found->second);
-    }
-    return largest;
-  }
-  /// The point to take next, and what is expected of it.
-  std::pair<MultiIndex, double> next() const {
-    std::pair<MultiIndex, double> best{{}, 0};
-    for (const auto &[index, remainder] : taken)
-      for (std::size_t d = 0; d < index.size(); ++d) {
-        MultiIndex after = index;
-        ++after[d];
-        if (taken.contains(after)) continue;
-        const std::optional<double> size = expected(after);
-        if (size && *size > best.second) best = {after, *size};
-      }
-    return best;
-  }
-};
 
 /// A basis that grows, with its product P V, so that what is inside costs no product.
 class GrowingBasis {
@@ -187,18 +124,17 @@ double append_by_combinations(const FieldSource &source, double least, std::mt19
 ResponseSpace append_fields(Problem &problem, const FieldSource &source,
                             const ResponseSearch &search, LinearBasis &basis) {
   const auto &[axes, all_parameters, tolerance, most] = search;
-  const std::vector<double> leja = leja_points(most);
+  const SparseGrid grid{axes, leja_points(most), {}};
   const PetscInt before = basis.size();
   GrowingBasis growing(basis, problem.v_product());
   ResponseSpace result;
-  SparseGrid grid;
+  GrowingGrid reached(axes.size());
   std::mt19937 generator(1); // the same on every rank
   double scale = 0;
   Index expected = 0;
   Progress progress("factorisations for displacements under unit loads", 0,
                     rank_of(problem.comm()) == 0);
-  for (std::pair<MultiIndex, double> next{MultiIndex(axes.size(), 0), 1}; next.second > tolerance;
-       next = grid.next()) {
+  for (auto next = next_of(reached); next.second > tolerance; next = next_of(reached)) {
     result.left = next.second;
     if (result.points == most) {
       if (rank_of(problem.comm()) == 0)
@@ -209,7 +145,7 @@ ResponseSpace append_fields(Problem &problem, const FieldSource &source,
             result.left, most);
       break;
     }
-    const Mu mu = point_at(problem.scene(), axes, next.first, leja, all_parameters);
+    const Mu mu = free_parameters_at(problem.scene(), grid, next.first, all_parameters);
     source.set(problem.assemble(mu));
     double longest = 0;
     if (scale == 0) { // at the first point all fields are wanted as they are, for their size
@@ -222,7 +158,7 @@ ResponseSpace append_fields(Problem &problem, const FieldSource &source,
     } else {
       longest = append_by_combinations(source, tolerance * scale, generator, growing, expected);
     }
-    grid.taken[next.first] = longest / scale;
+    reached.take(next.first, longest / scale);
     progress.update(++result.points, 0,
                     "largest remainder " + short_number(next.second) + ", wanted " +
                         short_number(tolerance) + ", ");

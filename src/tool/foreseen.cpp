@@ -59,7 +59,7 @@ constexpr double matrix_entry = 3;      ///< numbers: in A and in the product of
 constexpr double mesh_seconds = 5e-6;   ///< for a dof
 constexpr double solve_seconds = 5e-10; ///< likewise, one right-hand side
 constexpr double newton_solves = 80;    ///< by Nitsche's method, for a sample
-constexpr double axis_points = 9;       ///< of the grid of the condensed operator
+constexpr double axis_points = 9;       ///< of the grid of the condensed operator, along an axis
 constexpr double most_modes = 200;      ///< however many samples
 constexpr double most_buffered = 1e7;   ///< numbers: while fields are written
 constexpr double most_queries = 200;    ///< random ones of the self-check
@@ -81,7 +81,14 @@ double row_entries(const Scene &scene) {
 /// Entries of a factor of A by nested dissection.
 double factor_entries(const Scene &scene, double dofs) {
   const double n = std::max(2.0, dofs);
-  return n * row_entries(scene) * (scene.dim == 2 ? std::log2(n) : std::cbrt(n));
+  constexpr double in_space = 34; // CHOLMOD, solids from 10 000 to 130 000 dofs
+  return scene.dim == 2 ? n * row_entries(scene) * std::log2(n) : in_space * n * std::cbrt(n);
+}
+
+/// Seconds: in the plane entries are what costs, in space their products.
+double factorisation_seconds(const Scene &scene, double dofs) {
+  constexpr double in_plane = 1e-8, in_space = 2.2e-10;
+  return factor_entries(scene, dofs) * (scene.dim == 2 ? in_plane : in_space * std::sqrt(dofs));
 }
 
 double largest(MPI_Comm comm, double value) {
@@ -91,8 +98,9 @@ double largest(MPI_Comm comm, double value) {
 
 double snapshot_seconds(const Scene &scene, const RunSizes &size, double samples) {
   const bool each = !constant_stiffness(scene) && !size.eliminated;
-  return std::ceil(samples * size.group / size.ranks) * factor_entries(scene, size.dofs) *
-         (size.solves * solve_seconds + (each ? factor_seconds : 0));
+  return std::ceil(samples * size.group / size.ranks) *
+         (size.solves * solve_seconds * factor_entries(scene, size.dofs) +
+          (each ? factorisation_seconds(scene, size.dofs) : 0));
 }
 
 /// The stage that takes most on a node, its bytes there, and what makes it smaller.
@@ -196,23 +204,34 @@ RunSizes sizes_of(MPI_Comm world, const Problem &problem, const HfOptions &optio
 
 namespace {
 
+/// Those of degree below axis_points.
+double grid_points(double axes) {
+  double points = 1;
+  for (double d = 1; d <= axes; ++d)
+    points *= (axis_points - 1 + d) / d;
+  return points;
+}
+
 /// Of the reduction.
 ReductionSize reduction_size(const OfflineOptions &options, const std::vector<Mu> &training,
                              const RunSizes &run) {
   const Scene &scene = options.scene;
   const ParameterSpace &space = scene.parameters;
   const auto count = [](const auto &list) { return static_cast<double>(list.size()); };
+  const double loads =
+      separable_contact(scene) ? run.multipliers : std::max(run.contact, run.multipliers);
   ReductionSize size{.samples = count(training),
                      .dofs = run.dofs,
                      .contact = run.contact,
                      .multipliers = run.multipliers,
                      .ranks = static_cast<double>(run.ranks),
                      .axes = count(parameters_beside_common(scene.a, space)),
-                     .points =
-                         std::pow(axis_points, count(parameters_beside_common(scene.a, space))),
-                     .square = std::pow(std::max(run.contact, run.multipliers), 2),
+                     .points = grid_points(count(parameters_beside_common(scene.a, space))),
+                     .square = std::pow(loads, 2),
                      .entries = run.dofs * row_entries(scene),
                      .factor = factor_entries(scene, run.dofs),
+                     .loads = loads,
+                     .factorisation = factorisation_seconds(scene, run.dofs),
                      .of_a = count(interpolated_samples(scene.a, space, training)),
                      .of_f = count(interpolated_samples(scene.f, space, training)),
                      .of_b = separable_contact(scene) ? 11 * count(training) * run.multipliers : 0};

@@ -24,9 +24,9 @@ Scene disk() {
 const std::vector<Mu> unseen{{0.3, 0.21}, {0.9, 0.33}, {4.7, 0.44}, {2.2, 0.28}};
 constexpr int core_stiffness = 3, poisson_ratio = 4;
 
-std::vector<ChebyshevAxis> axes() {
-  return {{core_stiffness, std::log(0.2), std::log(5), 1},
-          {poisson_ratio, std::log(0.1), std::log(0.6), 1}};
+std::vector<GridAxis> axes() {
+  return {{core_stiffness, std::log(0.2), std::log(5)},
+          {poisson_ratio, std::log(0.1), std::log(0.6)}};
 }
 
 /// Unit forces at some contact dofs.

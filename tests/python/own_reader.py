@@ -161,14 +161,14 @@ class Model:
 
     def condensed(self, theta):
         """H = B A^-1 B^T."""
-        data, weights = self.data, np.ones(1)
-        for axis, lower, upper, points in data["law/axes"].reshape(-1, 4):
-            value, k = self.mu[self.names[int(axis)]], np.arange(points)
+        data, weights = self.data, np.ones(data["law/shape"].shape[1])
+        axes, z = data["law/axes"].reshape(-1, 3), data["law/abscissae"]
+        for (axis, lower, upper), numbers in zip(axes, data["law/points"].reshape(len(weights), -1).T):
+            value = self.mu[self.names[int(axis)]]
             if 0 < 3 * data["parameters/lower"][int(axis)] < data["parameters/upper"][int(axis)]:
                 value = np.log(value)
-            away = (2 * value - lower - upper) / (upper - lower) - np.cos(np.pi * k / (points - 1))
-            own = np.where(k % (points - 1), 1, 0.5) * (-1)**k / np.where(away, away, 1)
-            weights = np.outer(weights, own / own.sum() if all(away) else away == 0).ravel()
+            x = (2 * value - lower - upper) / (upper - lower)
+            weights *= [np.prod((x - z[:k]) / (z[k] - z[:k])) for k in numbers]
         of_block = data["law/shape"] @ weights
         coefficients = [theta[p] * theta[q] * of_block
                         for p in range(len(theta)) for q in range(p, len(theta))]

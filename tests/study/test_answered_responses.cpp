@@ -95,7 +95,8 @@ TEST(AnsweredResponses, HoldTheDisplacementsOfAllParameters) {
     const CondensedLoads loads = condensed_loads(r.problem, r.affine, r.mus(),
                                                  multipliers_of(r.samples), r.bases.nodal_dual);
     const int appended =
-        append_answered_responses(r.problem, loads, r.model, tolerance, r.bases.pod.basis);
+        append_answered_responses(r.problem, loads, r.model, tolerance, r.bases.pod.basis)
+            .functions;
     EXPECT_GT(appended, 0);
     EXPECT_LT(appended, loads.joining());
     EXPECT_LE(distance(r.problem, unseen, r.bases.pod.basis), 2 * tolerance)

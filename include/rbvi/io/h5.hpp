@@ -33,7 +33,8 @@ public:
   ~H5Writer();
   H5Writer(H5Writer &&) noexcept;
   H5Writer &operator=(H5Writer &&) noexcept;
-  /// rows x cols, row-major on disk; compressed where it is large and mostly zero.
+  /// rows x cols, row-major on disk; compressed where it is large and most of its entries are
+  /// rounded.
   void write(const std::string &name, const Matrix &value);
   /// A matrix that comes by rows: its shape first, then some of them at a time.
   void create_rows(const std::string &name, Index rows, Index columns);

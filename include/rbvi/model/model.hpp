@@ -18,8 +18,8 @@
 #include "rbvi/core/scene.hpp"
 #include "rbvi/element/output_cells.hpp"
 #include "rbvi/method/residual.hpp"
-#include "rbvi/model/chebyshev.hpp"
 #include "rbvi/model/nitsche_model.hpp"
+#include "rbvi/model/sparse_grid.hpp"
 
 #include <filesystem>
 #include <map>
@@ -110,15 +110,15 @@ struct SelfCheck {
 /// H = B A^-1 B^T on the columns of the dual basis (m of them), term by term:
 /// H(mu) = sum over t of coefficient_t(mu) terms_t, over the common coefficient of a. The terms
 /// come in blocks, one for each pair of terms p <= q of b, of J terms each: coefficient = theta_p
-/// theta_q (shape w)_j, w the weights of the grid at mu. Where b does not separate, the terms are
+/// theta_q (shape w)_j, w the functions of the grid at mu. Where b does not separate, the terms are
 /// those of E^T A^-1 E on the contact dofs that the dual basis meets (m of them), in one block, and
 /// H = B (sum of terms) B^T.
 struct CondensedOperator {
-  std::vector<ChebyshevAxis> axes; ///< of the free parameters of a over its common coefficient
-  Matrix shape;                    ///< J x grid points
-  Matrix terms;                    ///< m^2 x (blocks * J): symmetric matrices, column by column
-  std::vector<int> dofs;           ///< where b does not separate: these contact dofs, rising
-  double error = 0;                ///< of the interpolation over the grid, relative, estimated
+  SparseGrid grid;       ///< over the free parameters of a over its common coefficient
+  Matrix shape;          ///< J x grid points
+  Matrix terms;          ///< m^2 x (blocks * J): symmetric matrices, column by column
+  std::vector<int> dofs; ///< where b does not separate: these contact dofs, rising
+  double error = 0;      ///< of the interpolation: what further points would add, relative
 };
 
 /// What the multipliers are combined from.
@@ -286,7 +286,7 @@ struct ReducedModel {
   bool evaluates_gap() const { return contact.g.size() == 0 && has_multipliers(); }
 };
 
-inline constexpr int model_schema = 25;
+inline constexpr int model_schema = 26;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (fields may all be empty).

@@ -1,10 +1,11 @@
-// Responses to what the law answers, in place of those to the loads of all multipliers: where A
-// does not change with mu, the law at the nodes needs no displacements, and its answers at many mu
-// say which of them there are. Their number depends on how far contact moves, not on the mesh.
+// Responses to what the law answers, in place of those to the loads of all multipliers: the law at
+// the nodes needs no displacements, and its answers at many mu say which of them there are. Their
+// number depends on how far contact moves, not on the mesh.
 #pragma once
 
 #include "rbvi/mor/condensed.hpp"
 #include "rbvi/mor/orthonormal.hpp"
+#include "rbvi/mor/response_space.hpp"
 
 namespace rbvi {
 
@@ -13,8 +14,10 @@ namespace rbvi {
 /// than that.
 inline constexpr double answered_tolerance = 1e-5;
 
-/// Whether only the responses to answers join the modes: where the fields of all, one by one, have
-/// more than options.large_fields numbers. `loads`: of condensed_loads.
+/// Whether only the responses to answers join the modes, where both are possible: the fields of
+/// all, one by one, have more than options.large_fields numbers, or A changes and they are many.
+bool responses_await(double loads, double dofs, bool varies, const CondensedOptions &options);
+/// The same of `loads` of condensed_loads.
 bool awaits_answers(const Problem &problem, const CondensedLoads &loads,
                     const CondensedOptions &options);
 
@@ -33,6 +36,8 @@ public:
   /// Coefficients, loads x r, orthonormal in the energy: as few directions as are at most
   /// `tolerance` away from every answer that was added, the parts that add() left out not counted.
   Matrix coefficients(double tolerance) const;
+  /// The same, each as large as the answers that were added have it.
+  Matrix weighted_coefficients(double tolerance) const;
 
 private:
   Matrix root_;              ///< R with H = R^T R: the energy of loads c is |R c|^2
@@ -42,11 +47,13 @@ private:
 };
 
 /// Appends the responses to what `model` answers at the training parameters and at random ones: a
-/// hundred answers at a time, until another hundred have theirs in the modes to the tolerance.
-/// `model`: with the condensed operator of `loads` and any modes. Returns how many. Collective.
-/// Throws failure where the law has no answer at any mu, or always new ones.
-int append_answered_responses(Problem &problem, const CondensedLoads &loads,
-                              const ReducedModel &model, double tolerance, LinearBasis &modes);
+/// hundred answers at a time, until another hundred have theirs in the modes to the tolerance;
+/// where A changes with mu, at as many A as responses are new to the tolerance. `model`: with the
+/// condensed operator of `loads` and any modes. Collective. Throws failure where the law has no
+/// answer at any mu, or always new ones.
+ResponseSpace append_answered_responses(Problem &problem, const CondensedLoads &loads,
+                                        const ReducedModel &model, double tolerance,
+                                        LinearBasis &modes);
 
 /// The tolerance of answered_displacements: the error of u in V, relative to each answer but very
 /// small ones. Disk with two materials, against full solves: 2.7e-7 (with all responses 1.4e-7),

@@ -1,5 +1,5 @@
 // The condensed operator H = B A^-1 B^T on a basis of the multipliers: what changes with mu in A is
-// interpolated at Chebyshev points, what changes in B is separated already.
+// interpolated on a sparse grid, what changes in B is separated already.
 //
 // The law of contact and friction is not smooth in mu, and no linear space or cone of few functions
 // follows it; H is, and converges exponentially. So the multipliers keep their nodes, and the body
@@ -64,7 +64,7 @@ CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
                                const Matrix &basis);
 
 /// H = loads^T A^-1 loads in its blocks, times the common coefficient of A. One factorisation and a
-/// solve for each load at each Chebyshev point, shared among the ranks. Collective. Where the
+/// solve for each load at each point of the grid, shared among the ranks. Collective. Where the
 /// tolerance needs more points than the most, says so on standard error, and the error stands in
 /// the operator.
 ///

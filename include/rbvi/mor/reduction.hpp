@@ -32,12 +32,14 @@ struct ReductionSize {
   double ranks;
   double axes, points, square;  ///< of the condensed operator: of its grid, entries of a term
   double entries, factor;       ///< of A, of its factor
+  double loads;                 ///< of the condensed operator, each a column of A^-1
+  double factorisation;         ///< seconds
   double of_a, of_f, of_b;      ///< samples of A and F, numbers of those of B
   double joined = 0, modes = 0; ///< functions that join the modes; with them
   double model = 0;             ///< of the reduced model
   double self_check = 0;        ///< seconds
   /// Responses to so many loads, shared among the ranks.
-  double responses(double loads) const;
+  double responses(double count) const;
 };
 
 /// Numbers that each rank holds in a stage, and the first one; seconds, 0: they hang on what stages
@@ -46,8 +48,7 @@ struct StageNeed {
   double numbers = 0, on_first = numbers, seconds = 0;
 };
 
-inline constexpr double factor_seconds = 1e-8;    ///< for an entry of a factor
-inline constexpr double column_seconds = 2e-10;   ///< likewise, of many right-hand sides at once
+inline constexpr double column_seconds = 2e-10;   ///< for an entry of a factor, of many columns
 inline constexpr double span_factorisations = 60; ///< factorisations that responses in a span take
 inline constexpr double most_terms = 100;         ///< of the condensed operator; twice what A has
 inline constexpr const char *fewer_samples =

@@ -9,7 +9,7 @@
 #pragma once
 
 #include "rbvi/fem/problem.hpp"
-#include "rbvi/model/chebyshev.hpp"
+#include "rbvi/model/sparse_grid.hpp"
 #include "rbvi/mor/pod.hpp"
 
 namespace rbvi {
@@ -22,7 +22,7 @@ struct ResponseSpace {
 
 /// Where responses are asked for, and until when.
 struct ResponseSearch {
-  std::vector<ChebyshevAxis> axes; ///< of the free parameters of A
+  std::vector<GridAxis> axes; ///< of the free parameters of A
   FullMu all_parameters;
   double tolerance; ///< of the largest response
   int most;         ///< points, each a factorisation
