@@ -66,7 +66,7 @@ void round_entries(Eigen::Ref<Matrix> term, double size, double allowed) {
 /// orthonormal columns, to the tolerance. `columns`: (blocks * `square`) x any number.
 void compress(const Matrix &columns, const Matrix &coordinates, Index square, double tolerance,
               CondensedOperator &condensed) {
-  constexpr double rounded = 1e-3; // it is rough, and multipliers see what is
+  constexpr double rounded = 1e-5; // single nodes see what is rough
   const Index blocks = columns.rows() / square;
   const SmallSvd svd = small_svd(coordinates.transpose()); // tall: of no more than its R
   Index count = 1;
@@ -171,29 +171,30 @@ private:
   double tolerance_, largest_ = 0;
 };
 
-/// Those that miss more than the tolerance, with no more than so many points along an axis.
+/// Those that may matter to the tolerance, with no more than so many points along an axis.
 std::vector<GridPoint> wanted_points(const std::map<GridPoint, double> &candidates,
                                      const CondensedOptions &options) {
+  constexpr double together = 0.1; // what many points miss adds up
   std::vector<GridPoint> wanted;
   for (const auto &[point, remainder] : candidates)
-    if (remainder > options.tolerance &&
+    if (remainder > together * options.tolerance &&
         std::ranges::all_of(point, [&](int number) { return number < options.max_points; }))
       wanted.push_back(point);
   return wanted;
 }
 
 /// Interpolates the values over the common coefficient of A^-1 on a sparse grid that grows until
-/// what its next points miss is below the tolerance, or there are the most points along an axis.
+/// what its next points miss does not matter, or there are the most points along an axis.
 /// `blocks_at`: at some mu and their points, a column for each. Collective.
 template <class BlocksAt>
 void interpolate(const Problem &problem, const CondensedLoads &loads, const FullMu &all,
                  const CondensedOptions &options, CondensedOperator &condensed,
                  BlocksAt &&blocks_at) {
   constexpr double left_out = 1e-2; // of the tolerance
-  constexpr std::size_t width = 16; // points at a time
+  const auto for_all_ranks = static_cast<std::size_t>(ranks_of(problem.comm()));
   const Scene &scene = problem.scene();
   condensed.grid = {axes_of(scene), leja_points(options.max_points), {}};
-  GrowingGrid growing(condensed.grid.axes.size());
+  GrowingGrid growing(condensed.grid.axes.size(), Grows::interpolant);
   SpannedSurplus known(scene, condensed.grid, all, left_out * options.tolerance);
   Progress progress("points of the condensed operator", 0, rank_of(problem.comm()) == 0);
   while (true) {
@@ -203,7 +204,7 @@ void interpolate(const Problem &problem, const CondensedLoads &loads, const Full
     for (const auto &[point, remainder] : candidates)
       condensed.error = std::max(condensed.error, remainder);
     if (wanted.empty()) break;
-    wanted.resize(std::min(wanted.size(), width));
+    wanted.resize(std::min(wanted.size(), for_all_ranks));
     std::vector<Mu> set;
     for (const GridPoint &point : wanted)
       set.push_back(free_parameters_at(scene, condensed.grid, point, all));

@@ -1,19 +1,15 @@
 #include "growing_grid.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 namespace rbvi {
 
-/// Along each axis remainders decrease, but for single ones that are small by chance: the larger of
-/// the last two bounds the next one, and so does the least of these over the axes. Points of degree
-/// two are taken in any case, as nothing is known before.
-double GrowingGrid::expected(const GridPoint &point) const {
-  if (std::accumulate(point.begin(), point.end(), 0) <= 2) return 1;
-  double least = std::numeric_limits<double>::infinity();
+double GrowingGrid::of_coefficient(const GridPoint &point) const {
+  if (std::accumulate(point.begin(), point.end(), 0) <= 2) return 1; // nothing is known before
+  double least = 1;
   for (std::size_t d = 0; d < axes_; ++d) {
-    double larger = 0;
+    double larger = 0; // one that is small by chance does not count
     GridPoint before = point;
     for (int back = 0; back < 2 && before[d] > 0; ++back) {
       --before[d];
@@ -24,6 +20,15 @@ double GrowingGrid::expected(const GridPoint &point) const {
   return least;
 }
 
+double GrowingGrid::of_space(const GridPoint &point) const {
+  double largest = taken_.empty() ? 1 : 0;
+  for (std::size_t d = 0; d < axes_; ++d) {
+    GridPoint before = point;
+    if (before[d]-- > 0) largest = std::max(largest, taken_.at(before));
+  }
+  return largest;
+}
+
 std::map<GridPoint, double> GrowingGrid::candidates() const {
   std::map<GridPoint, double> result;
   const auto add = [&](const GridPoint &point) {
@@ -31,7 +36,8 @@ std::map<GridPoint, double> GrowingGrid::candidates() const {
       GridPoint before = point;
       if (before[d]-- > 0 && !taken_.contains(before)) return;
     }
-    if (!taken_.contains(point)) result.emplace(point, expected(point));
+    if (!taken_.contains(point))
+      result.emplace(point, grows_ == Grows::space ? of_space(point) : of_coefficient(point));
   };
   add(GridPoint(axes_, 0));
   for (const auto &[point, remainder] : taken_)

@@ -8,18 +8,26 @@
 
 namespace rbvi {
 
+/// What grows by a point.
+enum class Grows {
+  interpolant, ///< by a coefficient: these decrease along each axis, and the smallest bound holds
+  space        ///< by what its fields have outside: the largest of those of the points before
+};
+
 class GrowingGrid {
 public:
-  explicit GrowingGrid(std::size_t axes) : axes_(axes) {}
+  GrowingGrid(std::size_t axes, Grows grows) : axes_(axes), grows_(grows) {}
   /// `remainder`: what is missed at this point without it, relative.
   void take(const GridPoint &point, double remainder) { taken_[point] = remainder; }
   /// The points all of whose predecessors have been taken, with the remainder that is expected.
   std::map<GridPoint, double> candidates() const;
 
 private:
-  double expected(const GridPoint &point) const;
+  double of_coefficient(const GridPoint &point) const;
+  double of_space(const GridPoint &point) const;
 
   std::size_t axes_;
+  Grows grows_;
   std::map<GridPoint, double> taken_;
 };
 

@@ -131,7 +131,7 @@ TEST(Condensed, WhatOnlyScalesIsNotSampled) {
   expect("k",
          {{"materials", "{a: {at: all, E: '15 * (y > 0.25 ? k : 1)', nu: 0.3}}"},
           {"parameters", "{depth: {default: 0.05}, k: {range: [1, 10], default: 2}}"}},
-         {3.7}, 13);
+         {3.7}, 15);
 }
 
 TEST(Condensed, TooFewPointsMakeAModelThatSaysItsError) {

@@ -161,7 +161,8 @@ class Model:
 
     def condensed(self, theta):
         """H = B A^-1 B^T."""
-        data, weights = self.data, np.ones(data["law/shape"].shape[1])
+        data = self.data
+        weights = np.ones(data["law/shape"].shape[1])
         axes, z = data["law/axes"].reshape(-1, 3), data["law/abscissae"]
         for (axis, lower, upper), numbers in zip(axes, data["law/points"].reshape(len(weights), -1).T):
             value = self.mu[self.names[int(axis)]]

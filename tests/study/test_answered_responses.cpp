@@ -127,6 +127,29 @@ TEST(AnsweredResponses, TakeThePlaceOfLargeFields) {
   }
 }
 
+/// Where A changes, the answers' responses are there for all A, and multipliers as exact as ever.
+TEST(AnsweredResponses, ServeEveryStiffness) {
+  Scene disk = make_scene("rigid_disk", {{"arc_edges", "40"}});
+  disk.parameters = free_only(disk.parameters, "indentation,core_stiffness,poisson_ratio");
+  Reduced r(disk, "random:25:2");
+  std::vector<Mu> set = corners_and_faces(disk.parameters);
+  for (Mu &mu : parse_set(disk.parameters, "random:5:3"))
+    set.push_back(std::move(mu));
+  const auto unseen = solve_all(r.problem, set);
+  ReduceOptions options;
+  options.condensed.responses = 0; // the modes alone
+  r.reduce(options);
+  EXPECT_GT(r.errors_at(unseen).u.maxCoeff(), 1e-3);
+  options.condensed = {};
+  options.condensed.large_fields = 1e4;
+  r.reduce(options);
+  check_model(r.model);
+  EXPECT_GT(r.bases.factorisations, r.model.contact.law->condensed.grid.size());
+  const ModelErrors errors = r.errors_at(unseen);
+  EXPECT_LE(errors.u.maxCoeff(), 2e-4);
+  EXPECT_LE(errors.lambda.maxCoeff(), 1e-8);
+}
+
 /// A wheel, its top held and its halves of two materials, pressed on a floor by a body force, or by
 /// the displacement of its top alone where it has no weight.
 Scene pressed_wheel(bool heavy) {
