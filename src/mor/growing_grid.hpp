@@ -23,6 +23,7 @@ public:
   std::map<GridPoint, double> candidates() const;
 
 private:
+  /// Along each axis the larger of the last two bounds the next one.
   double of_coefficient(const GridPoint &point) const;
   double of_space(const GridPoint &point) const;
 
