@@ -93,8 +93,9 @@ RBVI_API rbvi_status rbvi_solve(rbvi_workspace *workspace, const double *mu, uns
 
 /* Of the last rbvi_solve of this workspace, which must have had an answer. */
 RBVI_API rbvi_status rbvi_outputs(rbvi_workspace *workspace, double *values);
-/* Beside each output its largest error over the validation set, absolute; and a bound of it where
- * the model has one. NaN outside of the box. Either may be null. */
+/* Beside each output its largest error over the validation set, absolute; and a bound of the
+ * error of this answer where the model has one (of the energy, made with -certify). NaN where there is
+ * none, the first outside of the box. Either may be null. */
 RBVI_API rbvi_status rbvi_errors(rbvi_workspace *workspace, double *expected, double *bounds);
 
 /* Derivatives of the outputs by the parameters, of the last rbvi_solve: `values` outputs x

@@ -108,8 +108,14 @@ void SharedQuery::errors(double *expected, double *bounds) const {
   answered();
   for (std::size_t i = 0; i < of_->columns().size(); ++i) {
     if (expected != nullptr) expected[i] = inside_ ? of_->output(i).largest_error : unknown;
-    if (bounds != nullptr) bounds[i] = unknown; // no model has one
+    if (bounds != nullptr) bounds[i] = bound_of(of_->columns()[i]);
   }
+}
+
+double SharedQuery::bound_of(const OutputColumn &column) const {
+  if (column.value != &Outputs::energy || !outputs_.energy_lower) return unknown;
+  return std::max(*outputs_.energy - *outputs_.energy_lower,
+                  *outputs_.energy_upper - *outputs_.energy);
 }
 
 void SharedQuery::gradients(double *values, int *kinked) {

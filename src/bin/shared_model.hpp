@@ -66,6 +66,7 @@ public:
 
 private:
   const ReducedAnswer &answered() const;
+  double bound_of(const OutputColumn &column) const; ///< NaN: it has none
   rbvi_grid keep(Grid grid);
 
   std::shared_ptr<const SharedModel> of_;

@@ -104,6 +104,9 @@ const std::vector<OutputRow> &output_rows() {
        "|u - u_N| and |B^T (lambda - lambda_N)| of this answer over energy_norm are at most this"},
       {&Outputs::error_indicator, "error_indicator", check, none, "the same as an estimate"},
       {&Outputs::energy_norm, "energy_norm", check, none, "|u_N| in the energy norm"},
+      {&Outputs::energy_lower, "energy_lower", check, none,
+       "without friction: the energy of the high-fidelity answer is at least this", Size::energy},
+      {&Outputs::energy_upper, "energy_upper", check, none, "and at most this", Size::energy},
       {&Outputs::iterations, "iterations", check, none, "steps of the solver"},
       {&Outputs::load_steps, "load_steps", check, none,
        "large deformations: load steps, where steps from the start failed; else 0"},
@@ -174,14 +177,6 @@ void set_penetration(const std::array<double, 2> &penetration, Outputs &outputs)
   if (deepest > round_off * size) outputs.overlap = deepest;
 }
 
-namespace {
-
-const char *name_of(std::optional<double> Outputs::*member) {
-  return std::ranges::find(output_columns(), member, &OutputColumn::value)->name.c_str();
-}
-
-} // namespace
-
 void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutput &errors) {
   for (const OutputColumn &column : columns_of({outputs})) {
     const std::optional<double> value = column.of(outputs);
@@ -195,11 +190,10 @@ void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutpu
   }
   for (const Outputs &one : outputs.interfaces) {
     out << one.name << ':';
-    for (const auto member :
-         {&Outputs::normal_force, &Outputs::tangential_force, &Outputs::contact_measure,
-          &Outputs::peak_pressure, &Outputs::contact_nodes, &Outputs::stick_nodes})
-      if (const std::optional<double> value = one.*member)
-        out << ' ' << name_of(member) << ' ' << formatted("%.10g", *value);
+    for (const char *name : {"normal_force", "tangential_force", "contact_measure", "peak_pressure",
+                             "contact_nodes", "stick_nodes"})
+      if (const std::optional<double> value = output_column(name).of(one))
+        out << ' ' << name << ' ' << formatted("%.10g", *value);
     out << '\n';
   }
 }

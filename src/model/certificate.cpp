@@ -57,17 +57,18 @@ double friction_slack(const NodeLaws &laws, const Vector &x, const Vector &slip)
   return sum;
 }
 
-/// Norms of r - A z and of r + A z in A(mu)^-1, `u` and `z` coefficients of the primal basis and of
-/// the lifting functions, `pushed` B^T l at CertificateModel::dofs.
-struct Norms {
-  double minus, plus;
+/// Norms of r - A z and of r + A z in A(mu)^-1, r . z and z . A z; `u` and `z` coefficients of the
+/// primal basis and of the lifting functions, `pushed` B^T l at CertificateModel::dofs.
+struct Residual {
+  double minus, plus, work = 0, square = 0;
 };
-Norms residual_norms(const CertificateModel &certificate, const Vector &theta_a,
+Residual residual_of(const CertificateModel &certificate, const Vector &theta_a,
                      const Vector &theta_f, const Vector &pushed, const Vector &u,
                      const Vector &z) {
   const Index count = std::ssize(certificate.references);
   Matrix references(theta_a.size(), count);
   Vector minus(count), plus(count);
+  Residual result{};
   for (Index j = 0; j < count; ++j) {
     const CertificateReference &at = certificate.references[j];
     references.col(j) = at.theta;
@@ -78,9 +79,15 @@ Norms residual_norms(const CertificateModel &certificate, const Vector &theta_a,
     add_terms(at.of_lifting, theta_a, z, 1, lifted);
     minus[j] = (residual - lifted).norm();
     plus[j] = (residual + lifted).norm();
+    if (j > 0) continue;
+    Vector own = Vector::Zero(residual.size()); // coordinates of z
+    add_terms(at.of_lifting, at.theta, z, 1, own);
+    result.work = residual.dot(own);
+    result.square = lifted.dot(own);
   }
-  return {norm_over_references(references, theta_a, minus),
-          norm_over_references(references, theta_a, plus)};
+  result.minus = norm_over_references(references, theta_a, minus);
+  result.plus = norm_over_references(references, theta_a, plus);
+  return result;
 }
 
 /// Whether the bounds of friction are known before the answer is.
@@ -92,6 +99,13 @@ bool are_given(const NodeLaws &laws) {
   return true;
 }
 
+/// Of the least energy, which is at most `gap` below `upper`. `terms`: the sum of the sizes of what
+/// is added up.
+AnswerBound::Interval interval(double upper, double gap, double terms) {
+  constexpr double units = 64 * std::numeric_limits<double>::epsilon();
+  return {upper - gap - units * terms, upper + units * terms};
+}
+
 /// The load's coefficients at mu; empty: there is none.
 Vector load_coefficients(const ReducedModel &model, const Scene &scene, const FullMu &mu) {
   return model.body.f.size() > 0 ? affine_coefficients(model.body.f, scene.f, scene, mu) : Vector();
@@ -101,7 +115,7 @@ Vector load_coefficients(const ReducedModel &model, const Scene &scene, const Fu
 
 std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scene,
                                     const Contact &contact, const ReducedAnswer &answer,
-                                    const Vector &lambda) {
+                                    const Vector &lambda, double imposed_energy) {
   const CertificateModel &certificate = model.certificate;
   if (certificate.references.empty()) return std::nullopt;
   const NodeLaws laws = laws_at(contact, answer.mu);
@@ -118,10 +132,9 @@ std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scen
   for (const Index row : laws.normal)
     own.push_back(certificate.own[row]);
   const Matrix &functions = certificate.lifting_trace;
-  const auto moved = [&](const Matrix &trace) { return Matrix(b * trace); };
   const std::optional<Lifting> lifting = lift(
       [&](const std::vector<Index> &which) {
-        return Matrix(moved(functions(Eigen::all, which))(laws.normal, Eigen::all));
+        return Matrix(Matrix(b * functions(Eigen::all, which))(laws.normal, Eigen::all));
       },
       functions.cols(), own, gaps.left(laws.normal), x(laws.normal), gaps.roundoff);
   if (!lifting) return std::nullopt;
@@ -130,14 +143,25 @@ std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scen
 
   const Vector theta_a = affine_coefficients(model.body.a, scene.a, scene, answer.mu);
   const Vector theta_f = load_coefficients(model, scene, answer.mu);
-  const Norms norms = residual_norms(certificate, theta_a, theta_f, known, answer.u, z);
+  const Residual residual = residual_of(certificate, theta_a, theta_f, known, answer.u, z);
   double slack = x(laws.normal).dot(lifting->left);
-  if (laws.has_tangents()) slack += friction_slack(laws, x, gaps.left - b * Vector(functions * z));
-  const ErrorBound bound = error_bound(norms.minus, norms.plus, slack);
+  const Vector moved = b * Vector(functions * z);
+  if (laws.has_tangents()) slack += friction_slack(laws, x, gaps.left - moved);
+  const ErrorBound bound = error_bound(residual.minus, residual.plus, slack);
   if (!std::isfinite(bound.u)) return std::nullopt; // A is no sum of those at the references
 
-  return AnswerBound{std::max(bound.u, bound.multiplier),
-                     std::sqrt(energy_product(model, theta_a, answer.u)), are_given(laws)};
+  const double square = energy_product(model, theta_a, answer.u);
+  AnswerBound result{std::max(bound.u, bound.multiplier), std::sqrt(square), are_given(laws)};
+  if (laws.has_tangents()) return result;
+  // J(v) = J(u_N) + (r + B^T l_N) . z + z . A z / 2
+  const double work =
+                   theta_f.size() > 0 ? answer.u.dot(model.body.f.reduced * theta_f) : 0.0,
+               pushing = x.dot(moved);
+  result.energy = interval(imposed_energy + square / 2 - work + residual.work + pushing +
+                               residual.square / 2,
+                           bound.gap,
+                           std::abs(imposed_energy) + square + std::abs(work) + std::abs(pushing));
+  return result;
 }
 
 /// With u_x the body's displacement under f and l_N, z = u_N - u_x and v = u_x, r + A z = 0 but for
@@ -165,7 +189,14 @@ AnswerBound bound_by_law(const ReducedModel &model, const Scene &scene, const No
     slack += x[row] * std::max(0.0, w[row]);
   if (laws.has_tangents()) slack += friction_slack(laws, x, -w);
   const ErrorBound bound = error_bound(outside + 2 * std::sqrt(apart), outside, slack);
-  return {std::max(bound.u, bound.multiplier), std::sqrt(square), are_given(laws)};
+  AnswerBound result{std::max(bound.u, bound.multiplier), std::sqrt(square), are_given(laws)};
+  if (laws.has_tangents()) return result;
+  // Of the load that the basis leaves, what multipliers work on its displacement: |B^T l|^2 is
+  // 2 E + |f|^2.
+  const double unknown = outside * std::sqrt(std::max(0.0, 2 * of_law + alone));
+  result.energy = interval(answer.energy + unknown, bound.gap + 2 * unknown,
+                           std::abs(answer.energy) + std::abs(imposed_energy) + square + alone);
+  return result;
 }
 
 CertificateModel rebased(CertificateModel certificate, const Matrix &c) {

@@ -289,17 +289,23 @@ void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vec
 void OnlineSolver::add_bound(const ReducedAnswer &solution, const Vector &lambda,
                              Outputs &outputs) const {
   const bool asked =
-      std::ranges::any_of(std::array{"error_bound", "error_indicator", "energy_norm"},
+      std::ranges::any_of(std::array{"error_bound", "error_indicator", "energy_norm",
+                                     "energy_lower", "energy_upper"},
                           [&](const char *name) { return is_asked(only_, name); });
   if (!model_.certificate.exists() || !asked) return;
+  const double imposed = imposed_energy_at(solution.mu);
   const std::optional<AnswerBound> bound =
       column_laws_ ? bound_by_law(model_, scene_, laws_at(*column_laws_, contact_, solution.mu),
-                                  solution, imposed_energy_at(solution.mu))
-                   : bound_of(model_, scene_, contact_, solution, lambda);
+                                  solution, imposed)
+                   : bound_of(model_, scene_, contact_, solution, lambda, imposed);
   if (!bound) return;
   const double size = std::max(bound->size, std::numeric_limits<double>::min());
   (bound->certified ? outputs.error_bound : outputs.error_indicator) = bound->error / size;
-  outputs.energy_norm = std::sqrt(image_count(scene_.mirrors)) * bound->size;
+  const double images = image_count(scene_.mirrors);
+  outputs.energy_norm = std::sqrt(images) * bound->size;
+  if (!bound->energy) return;
+  outputs.energy_lower = images * bound->energy->lower;
+  outputs.energy_upper = images * bound->energy->upper;
 }
 
 void OnlineSolver::check_forces(const ReducedAnswer &solution) const {

@@ -30,6 +30,18 @@ std::string told(const char *what, std::vector<double> values) {
          counted(std::ssize(values), "answer");
 }
 
+/// Of the interval of the energy, where there is one.
+void compare_energy(const Outputs &reduced, double energy, Effectivities &found) {
+  constexpr double of_solver = 1e-10;
+  if (!reduced.energy_lower) return;
+  const double size = std::max({std::abs(energy), std::abs(*reduced.energy_lower),
+                                std::pow(*reduced.energy_norm, 2)});
+  found.energy_widths.push_back((*reduced.energy_upper - *reduced.energy_lower) / size);
+  if (!(energy >= *reduced.energy_lower - of_solver * size &&
+        energy <= *reduced.energy_upper + of_solver * size))
+    ++found.wrong;
+}
+
 } // namespace
 
 Effectivities effectivities(Problem &problem, const ReducedModel &model,
@@ -37,7 +49,8 @@ Effectivities effectivities(Problem &problem, const ReducedModel &model,
   constexpr double of_solver = 1e-8;
   Effectivities found;
   if (!model.certificate.exists()) return found;
-  OnlineSolver solver(model, {.only = {"error_bound", "error_indicator", "energy_norm"}});
+  OnlineSolver solver(model, {.only = {"error_bound", "error_indicator", "energy_norm",
+                                      "energy_lower", "energy_upper"}});
   for (const Sample &sample : samples) {
     Outputs outputs;
     Vector error = sample.u;
@@ -54,6 +67,7 @@ Effectivities effectivities(Problem &problem, const ReducedModel &model,
       ++found.without;
       continue;
     }
+    compare_energy(outputs, sample.outputs.energy.value(), found);
     const Operators &op = problem.assemble(sample.mu);
     const double size = energy_norm(op.a, from_natural(problem.dofs(), sample.u).get()),
                  distance = energy_norm(op.a, from_natural(problem.dofs(), error).get()),
@@ -72,6 +86,9 @@ Effectivities effectivities(Problem &problem, const ReducedModel &model,
 void print_effectivities(std::ostream &out, const Effectivities &found) {
   if (!found.values.empty()) out << told("Bounds of u", found.values) << '\n';
   if (!found.indicators.empty()) out << told("Indicators of u", found.indicators) << '\n';
+  if (!found.energy_widths.empty())
+    out << "Intervals of the energy: at most " << short_number(std::ranges::max(found.energy_widths))
+        << " of it wide, over " << counted(std::ssize(found.energy_widths), "answer") << '\n';
   if (found.exact > 0)
     out << counted(found.exact, "answer") << " with a bound as exact as the high-fidelity ones\n";
   if (found.without > 0) out << counted(found.without, "answer") << " without a bound\n";

@@ -96,6 +96,29 @@ TEST_P(CInterface, AnswersAsTheInterfaceInCpp) {
   EXPECT_GT(answered, queries / 2);
 }
 
+TEST_P(CInterface, BoundsTheEnergyWhereTheModelDoes) {
+  std::vector<double> values(columns_), bounds(columns_);
+  rbvi_workspace *one = workspace();
+  ASSERT_EQ(rbvi_solve(one, mu(0), 0), RBVI_OK) << rbvi_error();
+  ASSERT_EQ(rbvi_outputs(one, values.data()), RBVI_OK);
+  ASSERT_EQ(rbvi_errors(one, nullptr, bounds.data()), RBVI_OK);
+  std::map<std::string, double> value, bound;
+  for (std::size_t i = 0; i < columns_; ++i) {
+    rbvi_output of;
+    ASSERT_EQ(rbvi_output_at(handle_, i, &of), RBVI_OK);
+    value[of.name] = values[i];
+    bound[of.name] = bounds[i];
+  }
+  for (const auto &[name, of] : bound)
+    EXPECT_EQ(std::isfinite(of), name == "energy" && value.contains("energy_lower")) << name;
+  if (std::string(GetParam()) == "two_disks") {
+    EXPECT_GE(value.at("energy") + bound.at("energy"), value.at("energy_upper"));
+    EXPECT_LE(value.at("energy") - bound.at("energy"), value.at("energy_lower"));
+    EXPECT_LE(bound.at("energy"), 1e-4 * std::abs(value.at("energy")));
+  }
+  rbvi_workspace_free(one);
+}
+
 TEST_P(CInterface, AnswersDependOnTheirParametersAlone) {
   std::vector<std::size_t> rows(queries);
   std::iota(rows.begin(), rows.end(), std::size_t{0});

@@ -31,7 +31,7 @@ RUNS = {
                        "-parameters", "radius,frame_height"],
     "membrane_degree_2": ["-case", CASES / "membrane_obstacle/case.yaml", "-train", "grid:3,2,2",
                           "-degree", "2", "-lumped", "no"],
-    "two_disks": [*TWO, "-train", "grid:9"],
+    "two_disks": [*TWO, "-train", "grid:9", "-certify"],
     "two_disks_cone": [*TWO, "-variant", "cone", "-train", "grid:9"],
     "disk_none": [*DISK, "-train", "grid:9", "-friction", "none"],
     "disk_condensed": [*DISK, "-train", "grid:3,3", "-parameters", "radius,core_stiffness", "-certify"],

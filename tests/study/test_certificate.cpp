@@ -49,7 +49,9 @@ class OfDisk : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Cases, OfDisk, testing::ValuesIn(cases),
                          [](const auto &info) { return info.param.name; });
 
-void expect_bounds(const Effectivities &found, bool bound) {
+/// `width`: of the intervals of the energy at most, over it.
+void expect_bounds(const Effectivities &found, const Case &c, double width) {
+  const bool bound = c.bound, frictionless = c.options == without;
   EXPECT_EQ(found.wrong, 0);
   EXPECT_EQ(found.without, 0);
   std::vector<double> values = bound ? found.values : found.indicators;
@@ -59,6 +61,8 @@ void expect_bounds(const Effectivities &found, bool bound) {
   if (bound) EXPECT_GE(values.front(), 1 - 1e-4) << "the error is known to 1e-8 of u";
   EXPECT_LE(values[values.size() / 2], bound ? 2 : 20);
   if (bound) EXPECT_LE(values.back(), 3);
+  EXPECT_EQ(found.energy_widths.size(), frictionless ? 9U : 0U);
+  if (frictionless) EXPECT_LE(std::ranges::max(found.energy_widths), width);
 }
 
 } // namespace
@@ -70,11 +74,11 @@ TEST_P(OfDisk, BoundsWhatTheModelLeaves) {
   ASSERT_TRUE(r.model.certificate.exists());
   const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:8:3"));
   const Effectivities good = effectivities(r.problem, r.model, unseen);
-  expect_bounds(good, c.bound);
+  expect_bounds(good, c, 1e-4);
   // Half of the functions of the displacement alone: the error is large, and told.
   const ReducedModel poor =
       leading(r.model, std::max(3, r.model.body.modes / 2), r.model.contact.generators);
-  expect_bounds(effectivities(r.problem, poor, unseen), c.bound);
+  expect_bounds(effectivities(r.problem, poor, unseen), c, 0.3);
 }
 
 } // namespace rbvi::certificate_study_test

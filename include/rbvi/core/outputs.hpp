@@ -63,6 +63,8 @@ struct Outputs {
   /// Of this reduced answer, |u - u_N| and |B^T (lambda - lambda_N)| at most, over |u_N|, all in
   /// the energy norm; an indicator where friction follows the pressure; |u_N| itself.
   std::optional<double> error_bound, error_indicator, energy_norm;
+  /// Between these is the energy of the high-fidelity answer; without friction.
+  std::optional<double> energy_lower, energy_upper;
   std::optional<double> iterations;
   /// Large deformations: load steps that the answer took, where steps from its start failed; else
   /// 0.

@@ -19,22 +19,27 @@ namespace rbvi {
 
 /// In the norm of A(mu), of the part of the body that is modelled.
 struct AnswerBound {
+  struct Interval {
+    double lower, upper;
+  };
   double error; ///< of |u - u_N|, and of |B^T (l - l_N)| in A^-1
   double size;  ///< |u_N|
   /// The law is one for which it is a bound: none of friction, or Tresca's with the same threshold
   /// everywhere. Else it is that of the problem whose bound of friction is the answer's own.
   bool certified;
+  /// Of the energy of u, what imposed values add to it included; without friction.
+  std::optional<Interval> energy{};
 };
 
-/// `lambda`: of the answer, at the dual dofs. Nothing where the model keeps nothing for it, where
+/// `lambda`: of the answer, at the dual dofs; `imposed_energy`: what of its energy is that of
+/// imposed values alone. Nothing where the model keeps nothing for it, where
 /// multipliers push or gaps are open at nodes of which it knows nothing, or where A is outside of
 /// what its references span.
 std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scene,
                                     const Contact &contact, const ReducedAnswer &answer,
-                                    const Vector &lambda);
+                                    const Vector &lambda, double imposed_energy);
 
-/// Of CertificateModel::by_law. `laws`: of the columns of the dual basis at mu; `imposed_energy`:
-/// what of the answer's energy is that of imposed values alone.
+/// Of CertificateModel::by_law. `laws`: of the columns of the dual basis at mu.
 AnswerBound bound_by_law(const ReducedModel &model, const Scene &scene, const NodeLaws &laws,
                          const ReducedAnswer &answer, double imposed_energy);
 

@@ -14,7 +14,11 @@ struct Effectivities {
   std::vector<double> indicators; ///< likewise of indicators
   int exact = 0; ///< answers whose error is that of the high-fidelity solver, 1e-8 of |u|, or less
   int without = 0; ///< answers that have no bound
-  int wrong = 0;   ///< bounds below the error, by more than that of the high-fidelity solver
+  /// Widths of the intervals of the energy over its size.
+  std::vector<double> energy_widths;
+  /// Bounds below the error, and energies outside of their interval, by more than the error of the
+  /// high-fidelity solver.
+  int wrong = 0;
 };
 
 /// Of the model's answers at samples with their fields, which must be those of the model. Nothing
@@ -22,7 +26,7 @@ struct Effectivities {
 Effectivities effectivities(Problem &problem, const ReducedModel &model,
                             const std::vector<Sample> &samples);
 
-/// "Bounds of u: 1.01 to 1.43 times the error, median 1.2, over 12 answers".
+/// "Bounds of u: 1.01 to 1.43 times the error, median 1.2, over 12 answers", and of the energy.
 void print_effectivities(std::ostream &out, const Effectivities &found);
 
 } // namespace rbvi
