@@ -1,5 +1,6 @@
 #include "rbvi/model/certificate.hpp"
 
+#include "basis_change.hpp"
 #include "rbvi/method/certificate.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
 
@@ -154,13 +155,11 @@ std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scen
   AnswerBound result{std::max(bound.u, bound.multiplier), std::sqrt(square), are_given(laws)};
   if (laws.has_tangents()) return result;
   // J(v) = J(u_N) + (r + B^T l_N) . z + z . A z / 2
-  const double work =
-                   theta_f.size() > 0 ? answer.u.dot(model.body.f.reduced * theta_f) : 0.0,
+  const double work = theta_f.size() > 0 ? answer.u.dot(model.body.f.reduced * theta_f) : 0.0,
                pushing = x.dot(moved);
-  result.energy = interval(imposed_energy + square / 2 - work + residual.work + pushing +
-                               residual.square / 2,
-                           bound.gap,
-                           std::abs(imposed_energy) + square + std::abs(work) + std::abs(pushing));
+  result.energy =
+      interval(imposed_energy + square / 2 - work + residual.work + pushing + residual.square / 2,
+               bound.gap, std::abs(imposed_energy) + square + std::abs(work) + std::abs(pushing));
   return result;
 }
 
@@ -199,16 +198,10 @@ AnswerBound bound_by_law(const ReducedModel &model, const Scene &scene, const No
   return result;
 }
 
-CertificateModel rebased(CertificateModel certificate, const Matrix &c) {
-  const Index n = c.rows(), k = c.cols();
-  if (k < n) certificate.by_law = false;
-  for (CertificateReference &reference : certificate.references) {
-    Matrix turned(reference.of_basis.rows(), reference.theta.size() * k);
-    for (Index q = 0; q < reference.theta.size(); ++q)
-      turned.middleCols(q * k, k) = reference.of_basis.middleCols(q * n, n) * c;
-    reference.of_basis = std::move(turned);
-  }
-  return certificate;
+void change_certificate(const BasisChange &to, CertificateModel &certificate) {
+  if (to.loses()) certificate.by_law = false;
+  for (CertificateReference &reference : certificate.references)
+    reference.of_basis = to.side_by_side(reference.of_basis);
 }
 
 } // namespace rbvi

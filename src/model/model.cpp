@@ -1,5 +1,6 @@
 #include "rbvi/model/model.hpp"
 
+#include "basis_change.hpp"
 #include "model_fields.hpp"
 #include "model_list.hpp"
 #include "rbvi/core/error.hpp"
@@ -54,16 +55,29 @@ void FieldChecker::operator()(const std::string &name, int value, Between said) 
               ".." + std::to_string(said.highest));
 }
 
-Matrix leading_block(const Matrix &packed, Index rows, Index r, Index n) {
-  Matrix result(r * n, packed.cols());
-  for (Index j = 0; j < n; ++j)
+/// Matrices of so many rows, each a column of its entries column by column: their first r rows.
+Matrix leading_rows(const Matrix &packed, Index rows, Index r) {
+  Matrix result(packed.rows() / rows * r, packed.cols());
+  for (Index j = 0; j < packed.rows() / rows; ++j)
     result.middleRows(j * r, r) = packed.middleRows(j * rows, r);
   return result;
 }
 
-/// C^T A C of a packed symmetric matrix, packed again.
-Vector congruence(const Eigen::Ref<const Vector> &packed, const Matrix &c) {
-  return pack(c.transpose() * (unpacked(packed, c.rows()) * c));
+/// Every part of a model that is one of its primal basis.
+void change_basis(const BasisChange &to, ReducedModel &model) {
+  BodyModel &body = model.body;
+  body.a.reduced = to.triangles(body.a.reduced);
+  change_rows(to, body.a_change.range);
+  change_rows(to, body.f.reduced);
+  change_rows(to, body.springs);
+  Matrix &b = model.contact.b.reduced;
+  if (const Index r = model.contact.generators, terms = b.cols(); b.size() > 0)
+    b = to.side_by_side(b.reshaped(r, to.before() * terms)).reshaped(r * to.after(), terms);
+  change_columns(to, model.contact.trace);
+  change_columns(to, model.outputs.basis);
+  change_columns(to, model.fields.basis);
+  change_certificate(to, model.certificate);
+  if (model.contact.nitsche) change_nitsche(to, *model.contact.nitsche);
 }
 
 } // namespace
@@ -90,32 +104,25 @@ ReducedModel leading(const ReducedModel &model, int n, int r) {
   result.body.modes = std::min(n, model.body.modes);
   result.body.supremizers = n - result.body.modes;
   result.body.online_enriched = model.body.online_enriched && result.body.supremizers > 0;
+  const bool fewer = n != model.primal_size(), fewer_dual = r != model.contact.generators;
+  if (fewer) change_basis({model.primal_size(), n}, result);
   result.contact.generators = r;
   result.contact.free_modes =
       std::max(0, r - (model.contact.generators - model.contact.free_modes));
-  if (model.body.a_change.rank() > 0)
-    result.body.a_change.range = model.body.a_change.range.topRows(n);
-  result.body.a.reduced = leading_triangles(model.body.a.reduced, model.primal_size(), n);
-  if (model.contact.b.size() > 0)
-    result.contact.b.reduced =
-        leading_block(model.contact.b.reduced, model.contact.generators, r, n);
-  if (model.outputs.basis.size() > 0) result.outputs.basis = model.outputs.basis.leftCols(n);
-  if (model.body.springs.size() > 0) result.body.springs = model.body.springs.topRows(n);
-  if (model.body.f.size() > 0) result.body.f.reduced = model.body.f.reduced.topRows(n);
-  if (model.contact.g.size() > 0) result.contact.g.reduced = model.contact.g.reduced.topRows(r);
-  result.contact.dual_basis = model.contact.dual_basis.leftCols(r);
-  result.contact.trace = model.contact.trace.leftCols(n);
-  if (n != model.primal_size())
-    result.certificate = rebased(model.certificate, Matrix::Identity(model.primal_size(), n));
-  keep_leading_nitsche(model.primal_size(), n, result);
-  if (model.fields.basis.size() > 0) result.fields.basis = model.fields.basis.leftCols(n);
-  if (n != model.primal_size()) result.fields.key.clear();
-  if (r != model.contact.generators || n != model.primal_size()) result.contact.starts.resize(0, 0);
-  if (r != model.contact.generators || n != model.primal_size())
+  if (fewer_dual) {
+    if (model.contact.b.size() > 0)
+      result.contact.b.reduced =
+          leading_rows(result.contact.b.reduced, model.contact.generators, r);
+    if (model.contact.g.size() > 0) result.contact.g.reduced = model.contact.g.reduced.topRows(r);
+    result.contact.dual_basis = model.contact.dual_basis.leftCols(r);
+  }
+  if (fewer) result.fields.key.clear();
+  if (fewer || fewer_dual) {
+    result.contact.starts.resize(0, 0);
     result.made.validation_enriched = {};
-  if (r != model.contact.generators || n != model.primal_size()) result.made.self_check = {};
-  if (r != model.contact.generators || result.body.modes != model.body.modes)
-    result.made.validation_decorrelated = {};
+    result.made.self_check = {};
+  }
+  if (fewer_dual || result.body.modes != model.body.modes) result.made.validation_decorrelated = {};
   return result;
 }
 
@@ -169,24 +176,10 @@ Scene in_box_of(const Scene &stored, Scene scene) {
 
 ReducedModel rebased(const ReducedModel &model, const Matrix &c, int modes) {
   ReducedModel result = model;
-  const Index k = c.cols(), r = model.contact.generators;
   result.body.modes = modes;
-  result.body.supremizers = static_cast<int>(k) - modes;
-  result.body.a.reduced.resize(k * (k + 1) / 2, model.body.a.reduced.cols());
-  for (Index q = 0; q < model.body.a.reduced.cols(); ++q)
-    result.body.a.reduced.col(q) = congruence(model.body.a.reduced.col(q), c);
-  if (model.body.a_change.rank() > 0)
-    result.body.a_change.range = c.transpose() * model.body.a_change.range;
-  result.contact.b.reduced.resize(r * k, model.contact.b.size());
-  for (Index q = 0; q < model.contact.b.size(); ++q)
-    result.contact.b.reduced.col(q) =
-        (model.contact.b.reduced.col(q).reshaped(r, c.rows()) * c).eval().reshaped();
-  if (model.body.springs.size() > 0) result.body.springs = c.transpose() * model.body.springs;
-  result.body.f.reduced = c.transpose() * model.body.f.reduced;
-  result.contact.trace = model.contact.trace * c;
-  result.certificate = rebased(model.certificate, c);
-  if (model.outputs.basis.size() > 0) result.outputs.basis = model.outputs.basis * c;
+  result.body.supremizers = static_cast<int>(c.cols()) - modes;
   result.fields.basis.resize(0, 0);
+  change_basis(BasisChange(c), result);
   return result;
 }
 

@@ -1,21 +1,8 @@
 #include "nitsche_part.hpp"
 
-#include "rbvi/model/packed.hpp"
+#include "basis_change.hpp"
 
 namespace rbvi {
-
-namespace {
-
-/// The terms of the first `size` of n columns.
-LayerTerms leading_terms(const LayerTerms &terms, Index n, Index size) {
-  LayerTerms result = terms;
-  if (terms.size() == 0) return result;
-  result.reduced = terms.columns.empty() ? Matrix(terms.reduced.topRows(size))
-                                         : leading_triangles(terms.reduced, n, size);
-  return result;
-}
-
-} // namespace
 
 Index curve_cells(const ReducedModel &model) {
   Index count = 0;
@@ -24,14 +11,14 @@ Index curve_cells(const ReducedModel &model) {
   return count;
 }
 
-void keep_leading_nitsche(Index n, Index size, ReducedModel &model) {
-  if (!model.contact.nitsche) return;
-  NitscheModel &kept = *model.contact.nitsche;
-  if (kept.rule == CurveRule::interpolated) kept.starts = Matrix(kept.starts.topRows(size));
-  if (kept.states.size() > 0) kept.states = Matrix(kept.states.topRows(size));
-  for (LayerTerms *terms : {&kept.consistency, &kept.contact_matrix, &kept.contact_vector,
-                            &kept.friction_matrix, &kept.friction_vector})
-    *terms = leading_terms(*terms, n, size);
+void change_nitsche(const BasisChange &to, NitscheModel &nitsche) {
+  if (nitsche.rule == CurveRule::interpolated) change_rows(to, nitsche.starts);
+  change_rows(to, nitsche.states);
+  for (LayerTerms *terms : {&nitsche.consistency, &nitsche.contact_matrix, &nitsche.contact_vector,
+                            &nitsche.friction_matrix, &nitsche.friction_vector})
+    if (terms->size() > 0)
+      terms->reduced =
+          terms->columns.empty() ? to.rows(terms->reduced) : to.triangles(terms->reduced);
 }
 
 const std::vector<std::string> &curve_rule_names() {

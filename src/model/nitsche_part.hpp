@@ -11,8 +11,8 @@ namespace rbvi {
 /// Cells beside the curves.
 Index curve_cells(const ReducedModel &model);
 
-/// Keeps what belongs to the first `size` of n primal columns, where there is such a part.
-void keep_leading_nitsche(Index n, Index size, ReducedModel &model);
+class BasisChange;
+void change_nitsche(const BasisChange &to, NitscheModel &nitsche);
 
 /// `entries`: of the reduced operator; `dofs`: at the contact.
 template <class Store, class Terms>

@@ -1,4 +1,4 @@
-#include "rbvi/model/packed.hpp"
+#include "basis_change.hpp"
 
 #include "rbvi/core/error.hpp"
 
@@ -28,11 +28,24 @@ Index packed_column(Index n, Index j) {
 
 } // namespace
 
-Matrix leading_triangles(const Matrix &packed, Index n, Index size) {
-  Matrix result(size * (size + 1) / 2, packed.cols());
-  for (Index j = 0; j < size; ++j)
-    result.middleRows(packed_column(size, j), size - j) =
-        packed.middleRows(packed_column(n, j), size - j);
+Matrix BasisChange::triangles(const Matrix &packed) const {
+  Matrix result(after_ * (after_ + 1) / 2, packed.cols());
+  if (c_ != nullptr) {
+    for (Index q = 0; q < packed.cols(); ++q)
+      result.col(q) = pack(c_->transpose() * (unpacked(packed.col(q), before_) * *c_));
+    return result;
+  }
+  for (Index j = 0; j < after_; ++j)
+    result.middleRows(packed_column(after_, j), after_ - j) =
+        packed.middleRows(packed_column(before_, j), after_ - j);
+  return result;
+}
+
+Matrix BasisChange::side_by_side(const Matrix &m) const {
+  const Index count = m.cols() / before_;
+  Matrix result(m.rows(), count * after_);
+  for (Index q = 0; q < count; ++q)
+    result.middleCols(q * after_, after_) = columns(m.middleCols(q * before_, before_));
   return result;
 }
 

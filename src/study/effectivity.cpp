@@ -34,8 +34,8 @@ std::string told(const char *what, std::vector<double> values) {
 void compare_energy(const Outputs &reduced, double energy, Effectivities &found) {
   constexpr double of_solver = 1e-10;
   if (!reduced.energy_lower) return;
-  const double size = std::max({std::abs(energy), std::abs(*reduced.energy_lower),
-                                std::pow(*reduced.energy_norm, 2)});
+  const double size = std::max(
+      {std::abs(energy), std::abs(*reduced.energy_lower), std::pow(*reduced.energy_norm, 2)});
   found.energy_widths.push_back((*reduced.energy_upper - *reduced.energy_lower) / size);
   if (!(energy >= *reduced.energy_lower - of_solver * size &&
         energy <= *reduced.energy_upper + of_solver * size))
@@ -50,7 +50,7 @@ Effectivities effectivities(Problem &problem, const ReducedModel &model,
   Effectivities found;
   if (!model.certificate.exists()) return found;
   OnlineSolver solver(model, {.only = {"error_bound", "error_indicator", "energy_norm",
-                                      "energy_lower", "energy_upper"}});
+                                       "energy_lower", "energy_upper"}});
   for (const Sample &sample : samples) {
     Outputs outputs;
     Vector error = sample.u;
@@ -87,8 +87,9 @@ void print_effectivities(std::ostream &out, const Effectivities &found) {
   if (!found.values.empty()) out << told("Bounds of u", found.values) << '\n';
   if (!found.indicators.empty()) out << told("Indicators of u", found.indicators) << '\n';
   if (!found.energy_widths.empty())
-    out << "Intervals of the energy: at most " << short_number(std::ranges::max(found.energy_widths))
-        << " of it wide, over " << counted(std::ssize(found.energy_widths), "answer") << '\n';
+    out << "Intervals of the energy: at most "
+        << short_number(std::ranges::max(found.energy_widths)) << " of it wide, over "
+        << counted(std::ssize(found.energy_widths), "answer") << '\n';
   if (found.exact > 0)
     out << counted(found.exact, "answer") << " with a bound as exact as the high-fidelity ones\n";
   if (found.without > 0) out << counted(found.without, "answer") << " without a bound\n";

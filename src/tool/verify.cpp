@@ -305,9 +305,10 @@ void measure_bounds(Problem &problem, const ReducedModel &model, const std::vect
   const Effectivities found = effectivities(problem, model, all);
   if (rank_of(problem.comm()) == 0) print_effectivities(std::cout, found);
   if (found.wrong > 0)
-    throw failure(counted(found.wrong, "bound") +
-                  " of u or of the energy that high-fidelity answers do not keep: this is a fault of "
-                  "rbvi, please report the case");
+    throw failure(
+        counted(found.wrong, "bound") +
+        " of u or of the energy that high-fidelity answers do not keep: this is a fault of "
+        "rbvi, please report the case");
 }
 
 /// Without what of another model would stay in it.

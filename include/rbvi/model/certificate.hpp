@@ -43,7 +43,7 @@ std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scen
 AnswerBound bound_by_law(const ReducedModel &model, const Scene &scene, const NodeLaws &laws,
                          const ReducedAnswer &answer, double imposed_energy);
 
-/// The same on the functions V C of the model's basis V, C n x k.
-CertificateModel rebased(CertificateModel certificate, const Matrix &c);
+class BasisChange;
+void change_certificate(const BasisChange &to, CertificateModel &certificate);
 
 } // namespace rbvi

@@ -31,9 +31,6 @@ inline Vector pack(const Matrix &square) {
   return packed;
 }
 
-/// Of matrices of order n, each a packed column, their leading blocks of order `size`.
-Matrix leading_triangles(const Matrix &packed, Index n, Index size);
-
 // Symmetric matrices of order n that are zero outside of the same diagonal blocks, one for each
 // body. `squares`: n^2 x count, each a column of its entries, column by column.
 
