@@ -19,10 +19,14 @@ public:
   /// Whether displacements are lost.
   bool loses() const { return after_ < before_; }
   /// M V -> M V C.
-  Matrix columns(const Matrix &m) const { return c_ != nullptr ? m * *c_ : m.leftCols(after_); }
+  Matrix columns(const Matrix &m) const {
+    if (c_ != nullptr) return m * *c_;
+    return m.leftCols(after_);
+  }
   /// V^T M -> (V C)^T M.
   Matrix rows(const Matrix &m) const {
-    return c_ != nullptr ? c_->transpose() * m : m.topRows(after_);
+    if (c_ != nullptr) return c_->transpose() * m;
+    return m.topRows(after_);
   }
   /// Packed V^T M V, each a column.
   Matrix triangles(const Matrix &packed) const;

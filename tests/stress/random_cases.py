@@ -2,8 +2,8 @@
 """Random case files: random_cases.py BIN COUNT [SEED] [--keep DIR].
 
 Each case has a random body, material, load, spring, contact, law, kinematics, formulation and outputs. It is reduced on a small
-training set, verified, and asked at corners and centres of faces of its box and at random parameters, where full solves
-answer too. One line a case:
+training set, verified at corners, faces and as many random parameters as `rbvi new` writes, and asked at corners and centres of
+faces of its box and at other random parameters, where full solves answer too. One line a case:
 
     same     every output of the model within three times the error that it prints (or 1e-7 of its scale)
     loose    an output beyond that, but within 1 %
@@ -171,7 +171,7 @@ class Case:
             else:
                 lines.append(f"{name}: {value}")
         count = 20 * len(self.box)
-        lines += [f"train: 'corners + random:{count}:1'", "validate: random:6:2"]
+        lines += [f"train: 'corners + random:{count}:1'", "validate: random:20:2"]
         return "\n".join(lines) + "\n"
 
     def points(self):
