@@ -10,6 +10,7 @@
 #include "rbvi/par/progress.hpp"
 #include "rbvi/par/small_svd.hpp"
 #include "rbvi/solve/complement.hpp"
+#include "rounding.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -54,14 +55,6 @@ Vector blocks_of(const Matrix &h, Index m) {
   return blocks;
 }
 
-/// Rounds the entries of a term, which counts `size` times, to multiples of a power of two by which
-/// the values move by so much: digits that mean nothing need no room in a file.
-void round_entries(Eigen::Ref<Matrix> term, double size, double allowed) {
-  const double entries = static_cast<double>(term.size());
-  const double step = std::exp2(std::floor(std::log2(allowed / size * std::sqrt(12 / entries))));
-  term = (term.array() / step).round() * step;
-}
-
 /// As few terms as hold the coefficients of all points of the grid, columns * coordinates with
 /// orthonormal columns, to the tolerance. `columns`: (blocks * `square`) x any number.
 void compress(const Matrix &columns, const Matrix &coordinates, Index square, double tolerance,
@@ -79,8 +72,9 @@ void compress(const Matrix &columns, const Matrix &coordinates, Index square, do
         columns.middleRows(block * square, square) * svd.right.leftCols(count);
   for (Index j = 0; j < count && coordinates.cols() > 1; ++j)
     for (Index block = 0; block < blocks; ++block)
-      round_entries(condensed.terms.col(block * count + j), svd.values[j],
-                    rounded * tolerance * svd.values[0]);
+      round_entries(condensed.terms.col(block * count + j),
+                    rounded * tolerance * svd.values[0] / svd.values[j] *
+                        std::sqrt(12 / static_cast<double>(square)));
 }
 
 /// Combinations of the multipliers, as large as those of `multipliers` (m x P) make them, and at

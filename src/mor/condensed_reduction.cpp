@@ -87,10 +87,11 @@ void choose_responses(Reducing &at) {
   ReducedBases &bases = at.made.bases;
   if (bases.awaiting) {
     const ResponseSpace appended = append_answered_responses(
-        at.problem, *bases.awaiting, at.made.model, answered_tolerance, bases.pod.basis);
+        at.problem, *bases.awaiting, at.made.model, at.options.condensed.answers, bases.pod.basis);
     bases.responses += appended.functions;
     bases.factorisations += appended.points;
     bases.awaiting.reset();
+    bases.left_by_answers = at.options.condensed.answers;
     at.basis_changed = true;
   } else if (factorises_for_displacements(at.problem, at.made.model)) {
     const Matrix kept = answered_displacements(at.problem, at.made.model);

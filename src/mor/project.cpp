@@ -11,6 +11,7 @@
 #include "rbvi/mor/stiffness_change.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/columns.hpp"
+#include "rounding.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -322,6 +323,15 @@ void store_histories(const AffineOperators &affine, const ReducedBases &bases,
   add_separation(affine, histories);
 }
 
+/// The trace tells of displacements alone, whose error is that of the responses to answers: each
+/// function to two digits more than that.
+void round_trace(double left, Matrix &trace) {
+  constexpr double beside = 1e-2;
+  for (auto column : trace.colwise())
+    if (const double size = column.lpNorm<Eigen::Infinity>(); left > 0 && size > 0)
+      round_entries(column, beside * left * size);
+}
+
 } // namespace
 
 ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
@@ -339,6 +349,7 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
     project_snapshots(problem, samples, affine, basis.get(), model);
   }
   restrict_trace(problem, samples.front().mu, model);
+  round_trace(bases.left_by_answers, model.contact.trace);
   model.fields.key = key_of_fields(problem, bases.pod.basis);
   store_histories(affine, bases, model.made.histories);
   return model;

@@ -146,8 +146,12 @@ std::vector<Option> of_law(ReduceOptions &o) {
       number("response_tolerance", relative_error, o.condensed.responses,
              "displacements A^-1 B^T under unit loads join the modes: first those of one A (if it "
              "is constant and they would take more than 160 MB only those under the loads of "
-             "answers, to 1e-5 in the energy), then of others until this relative error is left; "
+             "answers, to -answer_tolerance), then of others until this relative error is left; "
              "0: none join"),
+      number("answer_tolerance", relative_error, o.condensed.answers,
+             "where only displacements under the loads of answers join: what may be left of them, "
+             "relative, in the energy; the larger, the smaller the model and the faster a query, "
+             "and multipliers do not depend on it"),
       kept(use::law,
            only(use::multipliers,
                 choice("multiplier_reduction", choices(multiplier_reduction_names(), reductions),

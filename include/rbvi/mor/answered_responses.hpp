@@ -9,11 +9,6 @@
 
 namespace rbvi {
 
-/// The tolerance of append_answered_responses in reduce(). Multipliers do not depend on it, and u
-/// is then known to 1e-5 (cases/two_disks/README.md): a mesh so large that it matters is not finer
-/// than that.
-inline constexpr double answered_tolerance = 1e-5;
-
 /// Whether only the responses to answers join the modes, where both are possible: the fields of
 /// all, one by one, have more than options.large_fields numbers, or A changes and they are many.
 bool responses_await(double loads, double dofs, bool varies, const CondensedOptions &options);

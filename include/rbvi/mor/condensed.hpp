@@ -19,6 +19,9 @@ struct CondensedOptions {
   double tolerance = 1e-9; ///< of the interpolation, relative
   int max_points = 33;     ///< along one parameter
   double responses = 3e-3; ///< tolerance of responses of further A (condense); 0: none are appended
+  /// Where only the responses to answers of the law join the modes: what of these displacements may
+  /// be left, relative, in the energy. Multipliers do not depend on it.
+  double answers = 1e-5;
   /// The ring of columns_near_contact. The training samples only have to say roughly where contact
   /// is: where a query of the self-check finds it at the edge, reduce() keeps all columns.
   double ring = 0.5;

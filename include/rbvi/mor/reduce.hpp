@@ -87,6 +87,8 @@ struct ReducedBases {
   int responses = 0;   ///< the law at nodes: S functions of `condense` in their place
   /// The law at nodes: the loads of which responses follow, once there are answers of the law.
   std::optional<CondensedLoads> awaiting;
+  /// What of displacements those may leave, relative; 0: no responses followed.
+  double left_by_answers = 0;
   int factorisations = 0; ///< of A, for the condensed operator
   bool online_enriched = false;
   double infsup_tolerance = 0; ///< of the greedy, where ReduceOptions asks for it
