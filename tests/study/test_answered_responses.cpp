@@ -5,6 +5,7 @@
 #include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/answered_responses.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/scene/case.hpp"
 #include "rbvi/solve/vectors.hpp"
 #include "tests/catalogue.hpp"
@@ -124,6 +125,14 @@ TEST(AnsweredResponses, TakeThePlaceOfLargeFields) {
     const ModelErrors errors = r.errors_at(unseen);
     EXPECT_LE(errors.u.maxCoeff(), large ? 2e-5 : 1e-8);
     EXPECT_LE(errors.lambda.maxCoeff(), 1e-8) << "the multipliers are exact with both";
+    const BorrowedColumns basis(r.bases.pod.basis.columns.get());
+    const Matrix trace = restrict_to(r.problem.trace(), basis.get());
+    for (Index j = 0; j < trace.cols(); ++j) {
+      const double size = trace.col(j).lpNorm<Eigen::Infinity>(),
+                   off = (trace.col(j) - r.model.contact.trace.col(j)).lpNorm<Eigen::Infinity>();
+      EXPECT_LE(off, large ? 1e-2 * options.condensed.answers * size : 0) << j;
+      if (large) EXPECT_GT(off, 1e-4 * options.condensed.answers * size) << "digits go, " << j;
+    }
   }
 }
 
