@@ -4,6 +4,7 @@
 #include "rbvi/model/law_problem.hpp"
 #include "rbvi/mor/answered_responses.hpp"
 #include "rbvi/mor/nodal_dual_basis.hpp"
+#include "rounding.hpp"
 #include "shared_stages.hpp"
 
 #include <algorithm>
@@ -104,8 +105,11 @@ void choose_responses(Reducing &at) {
 
 void project_again(Reducing &at) {
   if (!std::exchange(at.basis_changed, false)) return;
+  constexpr double of_starts = 1e-4; // where queries start, a large model's need no more digits
   Matrix starts = std::move(at.made.model.contact.law->starts);
   project_bases(at);
+  if (at.made.bases.left_by_answers > 0)
+    round_entries(starts, of_starts * starts.cwiseAbs().maxCoeff());
   at.made.model.contact.law->starts = std::move(starts);
 }
 

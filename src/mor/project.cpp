@@ -324,9 +324,9 @@ void store_histories(const AffineOperators &affine, const ReducedBases &bases,
 }
 
 /// The trace tells of displacements alone, whose error is that of the responses to answers: each
-/// function to two digits more than that.
+/// function to a digit more than that.
 void round_trace(double left, Matrix &trace) {
-  constexpr double beside = 1e-2;
+  constexpr double beside = 0.1;
   for (auto column : trace.colwise())
     if (const double size = column.lpNorm<Eigen::Infinity>(); left > 0 && size > 0)
       round_entries(column, beside * left * size);
