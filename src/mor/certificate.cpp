@@ -19,7 +19,6 @@ namespace {
 
 constexpr std::size_t most_axes = 2; ///< parameters of A beside its common coefficient
 constexpr double dependent = 1e-13;  ///< what is left of a representer among the others
-constexpr int most_dofs = 3000;      ///< more would fill the memory with their representers
 
 /// The ends and the middle, in its coordinate, of each parameter that A depends on beside its
 /// common coefficient; the others in the middle. The middle of all comes first.
@@ -241,8 +240,8 @@ Certificate make_certificate(Problem &problem, const LinearBasis &basis, const R
   LiftedRows rows = lifted_rows(problem.contact(), model);
   certificate.own = std::move(rows.own);
   certificate.dofs = pushed_dofs(problem, model, training);
-  if (std::ssize(certificate.dofs) > most_dofs)
-    return {{}, "multipliers push more than " + std::to_string(most_dofs) + " contact dofs"};
+  if (std::ssize(certificate.dofs) > most_pushed_dofs)
+    return {{}, "multipliers push more than " + std::to_string(most_pushed_dofs) + " contact dofs"};
 
   const std::vector<Mu> references = reference_parameters(problem.scene());
   Handle<Mat> lifting;

@@ -253,6 +253,7 @@ void add_bounds(const ReduceOptions &options, std::vector<ReductionStage> &list)
   if (!options.certify) return;
   list.push_back({stage::bounds, bounds_row, keep_bounds,
                   [](const ReductionSize &size) {
+                    if (size.contact > most_pushed_dofs) return StageNeed{};
                     const double loads = 3 * (size.modes + size.multipliers) + size.contact;
                     return StageNeed{.numbers = 2 * size.dofs * loads / size.ranks + size.factor,
                                      .seconds = size.factorisation +

@@ -39,6 +39,12 @@ StageRow snapshot_row(std::size_t training, const Groups &groups, const SweepRep
   return {stage::snapshots, what};
 }
 
+/// Whether A is in proportion to a coefficient of mu: factors, and displacements under unit loads,
+/// then serve all of a sweep by columns of the compliance (solve/proportional_body.hpp).
+bool scales_as_a_whole(const Scene &scene) {
+  return !constant_stiffness(scene) && parameters_beside_common(scene.a, scene.parameters).empty();
+}
+
 /// What of the solves is done once for all mu.
 std::string factorisation_text(const Setup &setup) {
   if (!has_multipliers(setup.scene))
@@ -47,6 +53,8 @@ std::string factorisation_text(const Setup &setup) {
     return "A does not depend on mu: one for the sweep, one condensed operator";
   if (setup.hf.method == HfMethod::active_set && ScaledPart::fits(setup.scene))
     return "a part of A is scaled: three for the sweep of each group, the part is eliminated once";
+  if (setup.hf.method == HfMethod::active_set && scales_as_a_whole(setup.scene))
+    return "all of A is scaled: two for the sweep of each group, columns of contact are kept";
   return "A depends on mu: one for each solve";
 }
 
@@ -64,11 +72,14 @@ constexpr double most_modes = 200;      ///< however many samples
 constexpr double most_buffered = 1e7;   ///< numbers: while fields are written
 constexpr double most_queries = 200;    ///< random ones of the self-check
 constexpr double for_others = 5;        ///< times as many where friction may have other answers
-constexpr double query_seconds = 1e-4;  ///< of a small model
-constexpr double trace_seconds = 1e-9;  ///< for a number of the modes on the contact region
-constexpr double pair_seconds = 3e-10;  ///< for the cube of the modes of a pair of spaces
-constexpr double state_steps = 10;      ///< of contact that follows the displacement
-constexpr double balance_solves = 5;    ///< of bodies that contact alone holds
+constexpr double for_others_in_space = 20;
+constexpr double law_seconds = 6e-9;   ///< of a query, for the square of its multipliers
+constexpr double scaled_solves = 2;    ///< of a sample where columns are kept
+constexpr double query_seconds = 1e-4; ///< of a small model
+constexpr double trace_seconds = 1e-9; ///< for a number of the modes on the contact region
+constexpr double pair_seconds = 3e-10; ///< for the cube of the modes of a pair of spaces
+constexpr double state_steps = 10;     ///< of contact that follows the displacement
+constexpr double balance_solves = 5;   ///< of bodies that contact alone holds
 constexpr const char *coarser_mesh = "a coarser mesh (-mesh_refine, -mesh)";
 
 /// Nonzeros of a row of A, on average.
@@ -97,10 +108,15 @@ double largest(MPI_Comm comm, double value) {
 }
 
 double snapshot_seconds(const Scene &scene, const RunSizes &size, double samples) {
+  const double of_group = std::ceil(samples * size.group / size.ranks),
+               factor = factor_entries(scene, size.dofs),
+               factorisation = factorisation_seconds(scene, size.dofs);
+  if (!size.eliminated && scales_as_a_whole(scene) && size.multipliers > 0)
+    return 2 * factorisation + size.multipliers * factor * column_seconds +
+           of_group * (scaled_solves * solve_seconds * factor +
+                       law_seconds * size.multipliers * size.multipliers);
   const bool each = !constant_stiffness(scene) && !size.eliminated;
-  return std::ceil(samples * size.group / size.ranks) *
-         (size.solves * solve_seconds * factor_entries(scene, size.dofs) +
-          (each ? factorisation_seconds(scene, size.dofs) : 0));
+  return of_group * (size.solves * solve_seconds * factor + (each ? factorisation : 0));
 }
 
 /// The stage that takes most on a node, its bytes there, and what makes it smaller.
@@ -243,9 +259,12 @@ ReductionSize reduction_size(const OfflineOptions &options, const std::vector<Mu
   size.model =
       size.dofs * size.modes / size.ranks + terms * size.modes * size.modes + joining.stored;
   const double query = query_seconds + trace_seconds * size.contact * size.modes +
+                       (way.law ? law_seconds * size.multipliers * size.multipliers : 0) +
                        (way.dual_basis && !way.law ? pair_seconds * std::pow(size.modes, 3) : 0);
   size.self_check = (most_queries + count(corners_and_faces(space))) * query * run.balances *
-                    (has_friction(scene) ? for_others : 1) *
+                    (!has_friction(scene) ? 1
+                     : scene.dim == 2     ? for_others
+                                          : for_others_in_space) *
                     (follows_state(scene) ? state_steps : 1);
   return size;
 }

@@ -11,6 +11,10 @@
 
 namespace rbvi {
 
+/// Contact dofs of which bounds keep representers: more would fill the memory. Where there are more,
+/// the law tells the bounds, or there are none.
+inline constexpr int most_pushed_dofs = 3000;
+
 /// Why answers to a scene have no bound; empty: they have one.
 std::string no_certificate(const Scene &scene);
 
