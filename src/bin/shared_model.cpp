@@ -113,9 +113,10 @@ void SharedQuery::errors(double *expected, double *bounds) const {
 }
 
 double SharedQuery::bound_of(const OutputColumn &column) const {
-  if (column.value != &Outputs::energy || !outputs_.energy_lower) return unknown;
-  return std::max(*outputs_.energy - *outputs_.energy_lower,
-                  *outputs_.energy_upper - *outputs_.energy);
+  const auto within = interval_of(outputs_, column.name);
+  const std::optional<double> value = column.of(outputs_);
+  if (!within || !value) return unknown;
+  return std::max(*value - within->front(), within->back() - *value);
 }
 
 void SharedQuery::gradients(double *values, int *kinked) {

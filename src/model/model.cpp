@@ -77,7 +77,7 @@ void change_basis(const BasisChange &to, ReducedModel &model) {
   change_columns(to, model.outputs.basis);
   change_columns(to, model.fields.basis);
   change_certificate(to, model.certificate);
-  if (model.contact.nitsche) change_nitsche(to, *model.contact.nitsche);
+  change_nitsche(to, model);
 }
 
 } // namespace

@@ -11,7 +11,9 @@ Index curve_cells(const ReducedModel &model) {
   return count;
 }
 
-void change_nitsche(const BasisChange &to, NitscheModel &nitsche) {
+void change_nitsche(const BasisChange &to, ReducedModel &model) {
+  if (!model.contact.nitsche) return;
+  NitscheModel &nitsche = *model.contact.nitsche;
   if (nitsche.rule == CurveRule::interpolated) change_rows(to, nitsche.starts);
   change_rows(to, nitsche.states);
   for (LayerTerms *terms : {&nitsche.consistency, &nitsche.contact_matrix, &nitsche.contact_vector,

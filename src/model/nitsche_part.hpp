@@ -12,7 +12,8 @@ namespace rbvi {
 Index curve_cells(const ReducedModel &model);
 
 class BasisChange;
-void change_nitsche(const BasisChange &to, NitscheModel &nitsche);
+/// Where there is such a part.
+void change_nitsche(const BasisChange &to, ReducedModel &model);
 
 /// `entries`: of the reduced operator; `dofs`: at the contact.
 template <class Store, class Terms>

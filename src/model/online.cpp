@@ -289,8 +289,7 @@ void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vec
 void OnlineSolver::add_bound(const ReducedAnswer &solution, const Vector &lambda,
                              Outputs &outputs) const {
   const bool asked = std::ranges::any_of(
-      std::array{"error_bound", "error_indicator", "energy_norm", "energy_lower", "energy_upper"},
-      [&](const char *name) { return is_asked(only_, name); });
+      names_of_bounds, [&](const std::string &name) { return is_asked(only_, name); });
   if (!model_.certificate.exists() || !asked) return;
   const double imposed = imposed_energy_at(solution.mu);
   const std::optional<AnswerBound> bound =

@@ -33,6 +33,10 @@ std::vector<Mu> set_of_check(const ParameterSpace &space, int queries) {
 
 } // namespace
 
+std::vector<Mu> parameters_of_check(const ReducedModel &model) {
+  return set_of_check(model.scene.parameters, queries_of_check(model));
+}
+
 int queries_of_check(const ReducedModel &model) {
   constexpr double most = 200, fewest = 20, quick = 500;
   const double factor = quick / std::max(1, model.primal_size());
@@ -70,28 +74,6 @@ SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries,
   }
   if (peak > 0) check.friction.value /= peak;
   return check;
-}
-
-void look_for_other_answers(ReducedModel &model, const Scene &scene, std::vector<Mu> set,
-                            const QueriesAsked &asked) {
-  if (!has_friction(scene) || !model.contact.law) return;
-  if (set.empty()) set = set_of_check(model.scene.parameters, queries_of_check(model));
-  OnlineSolver solver(model, scene, {.looks_for_others = true});
-  Worst farthest;
-  int done = 0;
-  for (const Mu &mu : set) {
-    if (asked) asked(done++, static_cast<int>(set.size()));
-    try {
-      if (const double other = solver.solve(mu).to_other; other > farthest.value)
-        farthest = {other, mu};
-    } catch (const Error &) { // has none
-      continue;
-    }
-  }
-  if (!(farthest.value > 0)) return;
-  std::vector<double> &known = model.made.histories["self_check/other"];
-  known.assign(1, farthest.value);
-  known.insert(known.end(), farthest.at.begin(), farthest.at.end());
 }
 
 void print_self_check(std::ostream &out, const SelfCheck &check, const ParameterSpace &space) {

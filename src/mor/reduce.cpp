@@ -6,6 +6,7 @@
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/model/self_check.hpp"
 #include "rbvi/mor/certificate.hpp"
+#include "rbvi/mor/other_answers.hpp"
 #include "rbvi/mor/reduced_balance.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/columns.hpp"
@@ -233,9 +234,9 @@ void check_answers(Reducing &at) {
   const MPI_Comm comm = at.problem.comm();
   ReducedModel &model = at.made.model;
   std::array<int, 2> found{};
+  look_for_other_answers(comm, model, at.problem.scene());
   collectively(comm, [&] {
     if (rank_of(comm) != 0) return;
-    look_for_other_answers(model, at.problem.scene(), {}, reported("queries for other answers"));
     model.made.self_check =
         self_check(model, at.problem.scene(), queries_of_check(model),
                    {.method = at.options.online_method}, reported("queries of the self-check"));

@@ -11,9 +11,9 @@
 #include "rbvi/model/model.hpp"
 #include "rbvi/model/online.hpp"
 #include "rbvi/model/print.hpp"
-#include "rbvi/model/self_check.hpp"
 #include "rbvi/model/solution_vtu.hpp"
 #include "rbvi/model/training_samples.hpp"
+#include "rbvi/mor/other_answers.hpp"
 #include "rbvi/mor/reduce.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/study/effectivity.hpp"
@@ -368,7 +368,8 @@ void command_verify(const MeasureOptions &given) {
     make_own_directory(out);
     tell_of_speed(check_errors(model, problem.w_product(), truths, boundary, only, out),
                   sweep.report.seconds_per_solve);
-    look_for_other_answers(model, problem.scene(), from_columns(model.made.validated_mu));
+    look_for_other_answers(MPI_COMM_SELF, model, problem.scene(),
+                           from_columns(model.made.validated_mu));
     print_several_answers(std::cout, model);
     write_model(model, options.out / "model.h5");
     write_sample_table(out / "samples.csv", options.scene.parameters, answers);

@@ -61,8 +61,8 @@ void expect_bounds(const Effectivities &found, const Case &c, double width) {
   if (bound) EXPECT_GE(values.front(), 1 - 1e-4) << "the error is known to 1e-8 of u";
   EXPECT_LE(values[values.size() / 2], bound ? 2 : 20);
   if (bound) EXPECT_LE(values.back(), 3);
-  EXPECT_EQ(found.energy_widths.size(), frictionless ? 8U : 0U);
-  if (frictionless) EXPECT_LE(std::ranges::max(found.energy_widths), width);
+  EXPECT_EQ(found.widths.size(), frictionless ? 8U : 0U);
+  if (frictionless) EXPECT_LE(std::ranges::max(found.widths), width);
 }
 
 } // namespace

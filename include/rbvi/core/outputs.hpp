@@ -115,6 +115,18 @@ std::vector<OutputColumn> columns_of(const std::vector<Outputs> &rows);
 /// The one of this name; of none that is known that of a named output.
 OutputColumn output_column(const std::string &name);
 
+/// What bounds of errors tell.
+inline const std::vector<std::string> names_of_bounds{
+    "error_bound", "error_indicator", "energy_norm", "energy_lower", "energy_upper"};
+/// The interval that an output is in, where the answer has outputs NAME_lower and NAME_upper.
+inline std::optional<std::array<double, 2>> interval_of(const Outputs &outputs,
+                                                        const std::string &name) {
+  const std::optional<double> lower = output_column(name + "_lower").of(outputs),
+                              upper = output_column(name + "_upper").of(outputs);
+  if (!lower || !upper) return std::nullopt;
+  return std::array{*lower, *upper};
+}
+
 /// Whether an output is one of those that are asked for; `only` empty: all are.
 bool is_asked(const std::vector<std::string> &only, const std::string &name);
 /// The numbers that are asked for, of all contacts together, and all named outputs.

@@ -11,6 +11,9 @@ namespace rbvi {
 /// long.
 int queries_of_check(const ReducedModel &model);
 
+/// These, and corners and faces of the box.
+std::vector<Mu> parameters_of_check(const ReducedModel &model);
+
 /// Told, before each query, how many were asked, of how many.
 using QueriesAsked = std::function<void(int done, int all)>;
 
@@ -20,12 +23,6 @@ using QueriesAsked = std::function<void(int done, int all)>;
 /// fit.
 SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries,
                      const QueryOptions &options = {}, const QueriesAsked &asked = {});
-
-/// Asks a model with friction whether its law has other answers (QueryOptions::looks_for_others) at
-/// the parameters of `set`; empty: at those of the self-check. Where it has, the model knows
-/// (has_several_answers). Costs a few times as many queries. Throws likewise.
-void look_for_other_answers(ReducedModel &model, const Scene &scene, std::vector<Mu> set = {},
-                            const QueriesAsked &asked = {});
 
 /// "200 random queries and 14 at corners and faces, all answered; largest residual 3e-14
 /// (radius=0.8), ...": lines for people; says what to do where it is not clean.

@@ -14,8 +14,8 @@ struct Effectivities {
   std::vector<double> indicators; ///< likewise of indicators
   int exact = 0; ///< answers whose error is that of the high-fidelity solver, 1e-8 of |u|, or less
   int without = 0; ///< answers that have no bound
-  /// Widths of the intervals of the energy over its size.
-  std::vector<double> energy_widths;
+  /// Of intervals of outputs, over their size.
+  std::vector<double> widths;
   /// Bounds below the error, and energies outside of their interval, by more than the error of the
   /// high-fidelity solver.
   int wrong = 0;
