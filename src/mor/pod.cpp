@@ -14,12 +14,12 @@ namespace rbvi {
 
 namespace {
 
-constexpr double dependent = 1e-13; // remainder of a snapshot, relative to its norm
+constexpr double least_remainder = 1e-13; // remainder of a snapshot, relative to its norm
 constexpr double equal = 1e-8;      // singular values this close are kept or cut together
 constexpr double sign_tie = 1e-10;
 
 /// What append_block wants of a basis over the ranks. BVOrthogonalize does the same of columns that
-/// are all far from dependent; of others it says neither which nor how much is left of them.
+/// are all far from least_remainder; of others it says neither which nor how much is left of them.
 class BvColumns {
 public:
   BvColumns(const LinearBasis &basis, PetscInt more)
@@ -149,7 +149,7 @@ Pod pod(const std::vector<Vec> &snapshots, Mat product, const PodOptions &option
     RBVI_CALL(BVInsertVec(columns, rank, snapshots[p]));
     RBVI_CALL(BVOrthogonalizeColumn(columns, rank, factor.col(p).data(), &remainder, nullptr));
     factor(rank, p) = 0;
-    if (remainder <= dependent * std::hypot(factor.col(p).norm(), remainder)) continue;
+    if (remainder <= least_remainder * std::hypot(factor.col(p).norm(), remainder)) continue;
     RBVI_CALL(BVScaleColumn(columns, rank, 1 / remainder));
     factor(rank++, p) = remainder;
   }
