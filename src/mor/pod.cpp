@@ -19,7 +19,7 @@ constexpr double equal = 1e-8;      // singular values this close are kept or cu
 constexpr double sign_tie = 1e-10;
 
 /// What append_block wants of a basis over the ranks. BVOrthogonalize does the same of columns that
-/// are all far from least_remainder; of others it says neither which nor how much is left of them.
+/// are all far from dependent; of others it says neither which nor how much is left of them.
 class BvColumns {
 public:
   BvColumns(const LinearBasis &basis, PetscInt more)
