@@ -15,7 +15,7 @@ namespace rbvi {
 namespace {
 
 constexpr double least_remainder = 1e-13; // remainder of a snapshot, relative to its norm
-constexpr double equal = 1e-8;      // singular values this close are kept or cut together
+constexpr double equal = 1e-8;            // singular values this close are kept or cut together
 constexpr double sign_tie = 1e-10;
 
 /// What append_block wants of a basis over the ranks. BVOrthogonalize does the same of columns that
