@@ -91,8 +91,11 @@ void choose_responses(Reducing &at) {
         at.problem, *bases.awaiting, at.made.model, at.options.condensed.answers, bases.pod.basis);
     bases.responses += appended.functions;
     bases.factorisations += appended.points;
+    const double numbers =
+        static_cast<double>(bases.awaiting->joining()) * at.problem.dofs().total_free;
+    if (numbers > at.options.condensed.large_fields)
+      bases.left_by_answers = at.options.condensed.answers;
     bases.awaiting.reset();
-    bases.left_by_answers = at.options.condensed.answers;
     at.basis_changed = true;
   } else if (factorises_for_displacements(at.problem, at.made.model)) {
     const Matrix kept = answered_displacements(at.problem, at.made.model);

@@ -87,7 +87,7 @@ struct ReducedBases {
   int responses = 0;   ///< the law at nodes: S functions of `condense` in their place
   /// The law at nodes: the loads of which responses follow, once there are answers of the law.
   std::optional<CondensedLoads> awaiting;
-  /// What of displacements those may leave, relative; 0: no responses followed.
+  /// What of displacements those may leave, relative, where fields are large; else 0.
   double left_by_answers = 0;
   int factorisations = 0; ///< of A, for the condensed operator
   bool online_enriched = false;
