@@ -5,6 +5,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
+#include "rbvi/core/warnings.hpp"
 #include "rbvi/element/axisymmetric_forms.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/fem/assembly.hpp"

@@ -41,6 +41,27 @@ struct Pairs {
   std::vector<Index> rows, functions;
 };
 
+/// `known`, and of the rows that `wants` holds for one of each function that is not there yet.
+template <class Wants>
+Pairs pairs_of(const std::vector<int> &own, const Wants &wants, Pairs known = {}) {
+  for (std::size_t row = 0; row < own.size(); ++row) {
+    const Index function = own[row];
+    if (function < 0 || !wants(static_cast<Index>(row)) ||
+        std::ranges::find(known.functions, function) != known.functions.end())
+      continue;
+    known.rows.push_back(static_cast<Index>(row));
+    known.functions.push_back(function);
+  }
+  return known;
+}
+
+/// With one step of refinement.
+Matrix solved_twice(const Matrix &square, const Matrix &right) {
+  const Eigen::PartialPivLU<Matrix> lu(square);
+  const Matrix once = lu.solve(right);
+  return once + lu.solve(right - square * once);
+}
+
 /// What B_n z is wanted to be: s at these rows.
 class Wanted {
 public:
@@ -56,27 +77,18 @@ public:
     b_.conservativeResize(b_.rows(), b_.cols() + 1);
     b_.rightCols(1) = column;
   }
-  /// Rows that `wants` holds for, one of each function that is not there yet.
+  /// Those that `wants` holds for and that are not there yet.
   template <class Wants> Pairs more(const std::vector<int> &own, const Wants &wants) const {
-    Pairs result;
-    for (std::size_t row = 0; row < own.size(); ++row) {
-      const Index function = own[row];
-      if (function < 0 || !wants(static_cast<Index>(row))) continue;
-      const auto is_in = [&](const Pairs &pairs) {
-        return std::ranges::find(pairs.functions, function) != pairs.functions.end();
-      };
-      if (is_in(pairs_) || is_in(result)) continue;
-      result.rows.push_back(static_cast<Index>(row));
-      result.functions.push_back(function);
-    }
+    Pairs result = pairs_of(own, wants, pairs_);
+    const auto known = std::ssize(pairs_.rows);
+    result.rows.erase(result.rows.begin(), result.rows.begin() + known);
+    result.functions.erase(result.functions.begin(), result.functions.begin() + known);
     return result;
   }
   Lifting lifting(const Vector &s) const {
     Lifting result{pairs_.functions, Vector(b_.cols()), -s};
     if (b_.cols() == 0) return result;
-    const Matrix square = b_(pairs_.rows, Eigen::all);
-    result.weights = lu_solve(square, s(pairs_.rows));
-    result.weights += lu_solve(square, s(pairs_.rows) - square * result.weights);
+    result.weights = solved_twice(b_(pairs_.rows, Eigen::all), s(pairs_.rows));
     result.left += b_ * result.weights;
     return result;
   }
@@ -125,6 +137,35 @@ std::optional<Lifting> lift(const ColumnSource &columns, Index count, const std:
     return std::nullopt;
   lifting.left = (lifting.left.array() > roundoff).select(lifting.left, 0);
   return lifting;
+}
+
+std::optional<std::vector<LinearOutput>> linear_outputs(const ColumnSource &columns, Index count,
+                                                        const std::vector<int> &own,
+                                                        const Vector &multiplier,
+                                                        const Vector &left, const Matrix &outputs) {
+  constexpr double near = 0.1; // of the widest gap
+  const double widest = left.maxCoeff();
+  Pairs pairs = pairs_of(own, [&](Index row) { return multiplier[row] > 0; });
+  pairs = pairs_of(
+      own, [&](Index row) { return left[row] <= near * widest; }, std::move(pairs));
+  const Matrix lifted = columns(pairs.functions),
+               weights =
+                   solved_twice(lifted(pairs.rows, Eigen::all), outputs(pairs.rows, Eigen::all));
+  if (!weights.allFinite()) return std::nullopt;
+  Matrix missed = outputs - lifted * weights;
+  missed(pairs.rows, Eigen::all).setZero();
+  std::vector<LinearOutput> result;
+  for (Index k = 0; k < outputs.cols(); ++k) {
+    LinearOutput one{Vector::Zero(count), 0};
+    one.weights(pairs.functions) = weights.col(k);
+    for (Index row = 0; row < missed.rows(); ++row) {
+      if (missed(row, k) == 0) continue;
+      if (multiplier[row] > 0 || !(left[row] > 0)) return std::nullopt;
+      one.far = std::max(one.far, std::abs(missed(row, k)) / left[row]);
+    }
+    result.push_back(std::move(one));
+  }
+  return result;
 }
 
 } // namespace rbvi

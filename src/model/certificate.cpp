@@ -4,6 +4,7 @@
 #include "rbvi/method/certificate.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -91,6 +92,75 @@ Residual residual_of(const CertificateModel &certificate, const Vector &theta_a,
   return result;
 }
 
+/// B_n of lifting functions, each made once.
+ColumnSource pushes_of(const Matrix &functions, const SparseMatrix &b, const NodeLaws &laws) {
+  return [&, made = std::vector<bool>(functions.cols(), false),
+          all = Matrix(laws.nodes(), functions.cols())](const std::vector<Index> &which) mutable {
+    for (const Index function : which) {
+      if (made[function]) continue;
+      made[function] = true;
+      all.col(function) = Vector(b * functions.col(function))(laws.normal);
+    }
+    return Matrix(all(Eigen::all, which));
+  };
+}
+
+/// z . A z of the lifting functions.
+double square_of(const CertificateModel &certificate, const Vector &theta_a, const Vector &z) {
+  const CertificateReference &at = certificate.references.front();
+  Vector own = Vector::Zero(at.of_lifting.rows()), lifted = own;
+  add_terms(at.of_lifting, at.theta, z, 1, own);
+  add_terms(at.of_lifting, theta_a, z, 1, lifted);
+  return own.dot(lifted);
+}
+
+/// At the columns of B, 1 where the nodes of the first boundary move along y.
+Vector upwards(const InterfaceMesh &mesh) {
+  Vector nodal = Vector::Zero(std::ssize(mesh.dofs));
+  for (int node = 0; node < mesh.parts.front() && mesh.components > 1; ++node)
+    nodal[node * mesh.components + 1] = 1;
+  return at_columns(mesh, nodal);
+}
+
+/// Of the normal multipliers: their integral, and what they push the first body by along y.
+struct Forces {
+  Matrix of;                    ///< nodes x 2
+  std::array<double, 2> pull{}; ///< of adhesion, beside them
+};
+Forces forces_of(const Contact &contact, const FullMu &mu, const ContactOperators &at_mu,
+                 const NodeLaws &laws) {
+  Forces forces;
+  Vector pushes = Vector::Zero(at_mu.b.rows());
+  for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
+    ContactInterface &interface = *contact.interfaces[i];
+    const Index first = contact.first_row[i], count = interface.dual().size();
+    pushes.segment(first, count) = -(at_mu.b.middleRows(first, count) * upwards(interface.mesh()));
+    const Pull pull = pull_of(interface, mu, {});
+    forces.pull[0] += pull.normal_force;
+    forces.pull[1] += pull.force[1];
+  }
+  forces.of.resize(std::ssize(laws.normal), 2);
+  forces.of << at_mu.weights, pushes(laws.normal);
+  return forces;
+}
+
+/// `x`: normal multipliers; `linear`: of both forces.
+void add_forces(const CertificateModel &certificate, const Vector &theta_a,
+                const std::vector<LinearOutput> &linear, const Forces &forces, const Vector &x,
+                const ErrorBound &bound, AnswerBound &result) {
+  constexpr double units = 64 * std::numeric_limits<double>::epsilon();
+  const auto of = [&](std::size_t k) {
+    const auto force = forces.of.col(static_cast<Index>(k));
+    const double value = force.dot(x) + forces.pull[k],
+                 norm = std::sqrt(square_of(certificate, theta_a, linear[k].weights)),
+                 off = norm * bound.multiplier + linear[k].far * bound.gap +
+                       units * (force.cwiseAbs().dot(x) + std::abs(forces.pull[k]));
+    return AnswerBound::Interval{value - off, value + off};
+  };
+  result.normal_force = of(0);
+  result.reaction = of(1);
+}
+
 /// Whether the bounds of friction are known before the answer is.
 bool are_given(const NodeLaws &laws) {
   for (Index node = 0; node < laws.nodes(); ++node)
@@ -116,7 +186,7 @@ Vector load_coefficients(const ReducedModel &model, const Scene &scene, const Fu
 
 std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scene,
                                     const Contact &contact, const ReducedAnswer &answer,
-                                    const Vector &lambda, double imposed_energy) {
+                                    const Vector &lambda, double imposed_energy, bool forces) {
   const CertificateModel &certificate = model.certificate;
   if (certificate.references.empty()) return std::nullopt;
   const NodeLaws laws = laws_at(contact, answer.mu);
@@ -133,11 +203,10 @@ std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scen
   for (const Index row : laws.normal)
     own.push_back(certificate.own[row]);
   const Matrix &functions = certificate.lifting_trace;
-  const std::optional<Lifting> lifting = lift(
-      [&](const std::vector<Index> &which) {
-        return Matrix(Matrix(b * functions(Eigen::all, which))(laws.normal, Eigen::all));
-      },
-      functions.cols(), own, gaps.left(laws.normal), x(laws.normal), gaps.roundoff);
+  const ColumnSource lifted = pushes_of(functions, b, laws);
+  const Vector pressing = x(laws.normal);
+  const std::optional<Lifting> lifting =
+      lift(lifted, functions.cols(), own, gaps.left(laws.normal), pressing, gaps.roundoff);
   if (!lifting) return std::nullopt;
   Vector z = Vector::Constant(functions.cols(), lifting->raised);
   z(lifting->functions) += lifting->weights;
@@ -145,7 +214,7 @@ std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scen
   const Vector theta_a = affine_coefficients(model.body.a, scene.a, scene, answer.mu);
   const Vector theta_f = load_coefficients(model, scene, answer.mu);
   const Residual residual = residual_of(certificate, theta_a, theta_f, known, answer.u, z);
-  double slack = x(laws.normal).dot(lifting->left);
+  double slack = pressing.dot(lifting->left);
   const Vector moved = b * Vector(functions * z);
   if (laws.has_tangents()) slack += friction_slack(laws, x, gaps.left - moved);
   const ErrorBound bound = error_bound(residual.minus, residual.plus, slack);
@@ -160,6 +229,11 @@ std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scen
   result.energy =
       interval(imposed_energy + square / 2 - work + residual.work + pushing + residual.square / 2,
                bound.gap, std::abs(imposed_energy) + square + std::abs(work) + std::abs(pushing));
+  if (!forces) return result;
+  const Forces both = forces_of(contact, answer.mu, gaps.at_mu, laws);
+  if (const auto linear =
+          linear_outputs(lifted, functions.cols(), own, pressing, lifting->left, both.of))
+    add_forces(certificate, theta_a, *linear, both, pressing, bound, result);
   return result;
 }
 

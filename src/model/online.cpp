@@ -288,22 +288,33 @@ void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vec
 
 void OnlineSolver::add_bound(const ReducedAnswer &solution, const Vector &lambda,
                              Outputs &outputs) const {
-  const bool asked = std::ranges::any_of(
-      names_of_bounds, [&](const std::string &name) { return is_asked(only_, name); });
-  if (!model_.certificate.exists() || !asked) return;
+  const auto any = [&](const std::vector<std::string> &names) {
+    return std::ranges::any_of(names,
+                               [&](const std::string &name) { return is_asked(only_, name); });
+  };
+  if (!model_.certificate.exists() || !any(names_of_bounds())) return;
+  const bool forces =
+      any({"normal_force_lower", "normal_force_upper", "reaction_lower", "reaction_upper"});
   const double imposed = imposed_energy_at(solution.mu);
   const std::optional<AnswerBound> bound =
       column_laws_ ? bound_by_law(model_, scene_, laws_at(*column_laws_, contact_, solution.mu),
                                   solution, imposed)
-                   : bound_of(model_, scene_, contact_, solution, lambda, imposed);
+                   : bound_of(model_, scene_, contact_, solution, lambda, imposed, forces);
   if (!bound) return;
   const double size = std::max(bound->size, std::numeric_limits<double>::min());
   (bound->certified ? outputs.error_bound : outputs.error_indicator) = bound->error / size;
   const double images = image_count(scene_.mirrors);
   outputs.energy_norm = std::sqrt(images) * bound->size;
-  if (!bound->energy) return;
-  outputs.energy_lower = images * bound->energy->lower;
-  outputs.energy_upper = images * bound->energy->upper;
+  const auto tell = [&](const char *output, const std::optional<AnswerBound::Interval> &interval) {
+    const std::string name(output);
+    if (!interval || !output_column(name).of(outputs)) return;
+    for (const auto &[end, value] :
+         {std::pair{"_lower", interval->lower}, {"_upper", interval->upper}})
+      if (is_asked(only_, name + end)) outputs.named.push_back({name + end, images * value});
+  };
+  tell("energy", bound->energy);
+  tell("normal_force", bound->normal_force);
+  tell("reaction", bound->reaction);
 }
 
 void OnlineSolver::check_forces(const ReducedAnswer &solution) const {
@@ -335,9 +346,9 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedAnswer &solution) const
   const Vector gap = trace_->gap_left(operators, solution.u);
   trace_->check_outside(operators, gap);
   set_penetration(penetration_at(gap, operators.nodal_gap), result);
-  add_bound(solution, lambda, result);
   const double least = solution.least_pressure * std::max(0.0, lambda.maxCoeff());
   contact_outputs(contact_, solution.mu, operators, lambda, least, result);
+  add_bound(solution, lambda, result);
   check_finite(result);
   return result;
 }

@@ -4,6 +4,7 @@
 #include "rbvi/core/largest.hpp"
 #include "rbvi/core/locking.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/core/warnings.hpp"
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/io/system_error.hpp"

@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/locking.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/core/warnings.hpp"
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/io/system_error.hpp"
 #include "rbvi/io/write_atomically.hpp"

@@ -30,9 +30,9 @@ std::string told(const char *what, std::vector<double> values) {
          counted(std::ssize(values), "answer");
 }
 
-/// Of the outputs whose interval the answer tells. `scale`: an energy beside which errors of the
+/// Of the outputs whose interval the answer tells. `energy`: one beside which errors of the
 /// high-fidelity solver are small.
-void compare_intervals(const Outputs &reduced, const Outputs &truth, double scale,
+void compare_intervals(const Outputs &reduced, const Outputs &truth, double energy,
                        Effectivities &found) {
   constexpr double of_solver = 1e-10;
   for (const OutputColumn &column : output_columns()) {
@@ -40,8 +40,10 @@ void compare_intervals(const Outputs &reduced, const Outputs &truth, double scal
     const std::optional<double> value = column.of(truth);
     if (!within || !value) continue;
     const auto [lower, upper] = *within;
-    const double size = std::max({std::abs(*value), std::abs(lower), scale});
-    found.widths.push_back((upper - lower) / size);
+    const double scale = column.size == Size::energy ? energy : truth.normal_force.value_or(0),
+                 size = std::max({std::abs(*value), std::abs(lower), scale});
+    double &width = found.widths[column.name];
+    width = std::max(width, (upper - lower) / size);
     if (!(*value >= lower - of_solver * size && *value <= upper + of_solver * size)) ++found.wrong;
   }
 }
@@ -53,7 +55,7 @@ Effectivities effectivities(Problem &problem, const ReducedModel &model,
   constexpr double of_solver = 1e-8;
   Effectivities found;
   if (!model.certificate.exists()) return found;
-  OnlineSolver solver(model, {.only = names_of_bounds});
+  OnlineSolver solver(model, {.only = names_of_bounds()});
   for (const Sample &sample : samples) {
     Outputs outputs;
     Vector error = sample.u;
@@ -89,9 +91,8 @@ Effectivities effectivities(Problem &problem, const ReducedModel &model,
 void print_effectivities(std::ostream &out, const Effectivities &found) {
   if (!found.values.empty()) out << told("Bounds of u", found.values) << '\n';
   if (!found.indicators.empty()) out << told("Indicators of u", found.indicators) << '\n';
-  if (!found.widths.empty())
-    out << "Intervals of the energy: at most " << short_number(std::ranges::max(found.widths))
-        << " of it wide, over " << counted(std::ssize(found.widths), "answer") << '\n';
+  for (const auto &[output, width] : found.widths)
+    out << "Intervals of " << output << ": at most " << short_number(width) << " of it wide\n";
   if (found.exact > 0)
     out << counted(found.exact, "answer") << " with a bound as exact as the high-fidelity ones\n";
   if (found.without > 0) out << counted(found.without, "answer") << " without a bound\n";

@@ -15,7 +15,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr int sample_schema = 14;
+constexpr int sample_schema = 15;
 
 void check_settings(const std::filesystem::path &path, const Settings &mine,
                     const Settings &theirs) {

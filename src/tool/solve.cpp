@@ -2,6 +2,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/locking.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/core/warnings.hpp"
 #include "rbvi/fem/check_scene.hpp"
 #include "rbvi/mesh/contact_curves.hpp"
 #include "rbvi/model/print.hpp"

@@ -2,6 +2,7 @@
 
 #include "rbvi/core/locking.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/core/warnings.hpp"
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/study/bench.hpp"

@@ -5,6 +5,7 @@
 #include "rbvi/contact/surfaces.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/formula.hpp"
+#include "rbvi/core/warnings.hpp"
 #include "support_scenes.hpp"
 
 #include <gtest/gtest.h>

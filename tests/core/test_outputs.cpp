@@ -1,5 +1,6 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/outputs.hpp"
+#include "rbvi/core/warnings.hpp"
 #include "rbvi/io/output_table.hpp"
 
 #include <cstddef>
@@ -34,7 +35,8 @@ TEST(OutputTable, ErrorsStandBesideTheirOutputsAndFailuresSayWhy) {
   Outputs like;
   like.energy = like.kkt_residual = 0;
   std::ostringstream out;
-  OutputTable table(out, space, like, {{{"energy", 1.23e-5}, {"min_u", 1}}, true, 3, {"id", "time"}});
+  OutputTable table(out, space, like,
+                    {{{"energy", 1.23e-5}, {"min_u", 1}}, true, 3, {"id", "time"}});
   Outputs row;
   row.energy = 0.12345678901;
   row.kkt_residual = 1e-15;
@@ -232,6 +234,7 @@ TEST(Outputs, ThatAreNotFiniteAreNoAnswer) {
   EXPECT_NO_THROW(check_finite(outputs));
   for (const OutputColumn &column : output_columns())
     for (const double bad : {std::nan(""), 1 / 0.0}) {
+      if (column.value == nullptr) continue; // of a reduced answer
       Outputs wrong = outputs;
       wrong.*column.value = bad;
       try {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace rbvi::certificate_test {
 namespace {
@@ -124,6 +125,54 @@ TEST(Certificate, BoundsAnswersNearAndFar) {
       }
     }
   EXPECT_EQ(problems, 1500);
+}
+
+/// Any sums of multipliers, where the last node that does not press has no function.
+TEST(Certificate, BoundsLinearOutputs) {
+  Random random(8);
+  int told = 0, far = 0, refused = 0;
+  for (int k = 0; k < 300; ++k) {
+    const Problem p = random_problem(random, 2 + k % 4, 14, 0);
+    const Index n = p.nodes();
+    const Answer exact = solve(p);
+    const Matrix functions = lu_solve(p.a, p.b.transpose()), lifted = p.b * functions,
+                 outputs = random.matrix(n, 3);
+    for (const double off : {1e-6, 1e-3, 0.1}) {
+      const Vector u = exact.u + off * random.vector(exact.u.size()),
+                   l = admissible(p.laws, exact.l + off * random.vector(n).cwiseProduct(exact.l));
+      const auto [bound, v] = certify(p, u, l);
+      const Vector left = p.g - p.b * v;
+      std::vector<int> own(n);
+      std::iota(own.begin(), own.end(), 0);
+      for (Index row = n - 1; row >= 0; --row)
+        if (l[row] == 0) {
+          own[row] = -1;
+          break;
+        }
+      const auto bounds = linear_outputs(columns_of(lifted), n, own, l, left, outputs);
+      if (!bounds && ++refused > 0) continue;
+      for (Index c = 0; c < outputs.cols(); ++c) {
+        const LinearOutput &one = (*bounds)[c];
+        const double most =
+            p.norm(functions * one.weights) * bound.multiplier + one.far * bound.gap;
+        EXPECT_LE(std::abs(outputs.col(c).dot(exact.l - l)), most * (1 + 1e-9) + 1e-9);
+        ++told;
+        far += one.far > 0;
+      }
+    }
+  }
+  EXPECT_GE(told, 2000);
+  EXPECT_GE(far, 1000);
+  EXPECT_LE(refused, 100);
+}
+
+TEST(Certificate, LinearOutputsNeedAFunctionWhereSomethingPresses) {
+  const Matrix b{{1, 0.1}, {0.1, 1}}, outputs = Matrix::Ones(2, 1);
+  const std::vector<int> first{0, -1};
+  EXPECT_TRUE(linear_outputs(columns_of(b), 2, first, Vector{{1, 0}}, Vector{{0, 1}}, outputs));
+  EXPECT_FALSE(linear_outputs(columns_of(b), 2, first, Vector{{1, 0.5}}, Vector{{0, 0}}, outputs));
+  EXPECT_FALSE(linear_outputs(columns_of(b), 2, first, Vector{{1, 0}}, Vector{{0, 0}}, outputs))
+      << "it might";
 }
 
 TEST(Certificate, IsSharpNearTheAnswer) {

@@ -1,5 +1,7 @@
 // What small kinematics leave out: gaps of displaced points in closed form, strains, and who tells.
 #include "drawn_bodies.hpp"
+
+#include "rbvi/core/warnings.hpp"
 #include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 // Outputs of a case's own: against closed forms, full and reduced, and back from files.
 #include "named_outputs.hpp"
 
+#include "rbvi/core/warnings.hpp"
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/model/print.hpp"
 #include "rbvi/study/output_errors.hpp"

@@ -1,6 +1,7 @@
 // The files of a sweep: what is used again, set aside, refused.
 #include "sweep_test.hpp"
 
+#include "rbvi/core/warnings.hpp"
 #include "rbvi/io/h5.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "tests/catalogue.hpp"

@@ -63,8 +63,6 @@ struct Outputs {
   /// Of this reduced answer, |u - u_N| and |B^T (lambda - lambda_N)| at most, over |u_N|, all in
   /// the energy norm; an indicator where friction follows the pressure; |u_N| itself.
   std::optional<double> error_bound, error_indicator, energy_norm;
-  /// Between these is the energy of the high-fidelity answer; without friction.
-  std::optional<double> energy_lower, energy_upper;
   std::optional<double> iterations;
   /// Large deformations: load steps that the answer took, where steps from its start failed; else
   /// 0.
@@ -72,13 +70,15 @@ struct Outputs {
   /// Large deformations: the change in the last step over that in the one before.
   std::optional<double> contraction;
   std::optional<double> seconds;
-  std::vector<NamedOutput> named{};  ///< of the scene's own (Scene::outputs), in their order
+  /// Of the scene's own (Scene::outputs), in their order; behind them what a reduced answer alone
+  /// tells, intervals (NAME_lower, NAME_upper) and derivatives.
+  std::vector<NamedOutput> named{};
   std::string name{};                ///< of the contact interface, where they are of one alone
   std::vector<Outputs> interfaces{}; ///< of contact, each apart; empty: there is one
 };
 
-/// Every number of Outputs in the order of the table in outputs.cpp, which knows of each its
-/// column, what several contacts make of it, and its definition; not the named ones.
+/// Every number of Outputs but the named ones, in the order of the table in outputs.cpp, which
+/// knows of each its column, what several contacts make of it, and its definition.
 std::vector<std::optional<double>> numbers_of(const Outputs &outputs);
 /// The inverse. Throws bad_input for another number of them.
 void set_numbers(const std::vector<std::optional<double>> &numbers, Outputs &outputs);
@@ -116,8 +116,7 @@ std::vector<OutputColumn> columns_of(const std::vector<Outputs> &rows);
 OutputColumn output_column(const std::string &name);
 
 /// What bounds of errors tell.
-inline const std::vector<std::string> names_of_bounds{
-    "error_bound", "error_indicator", "energy_norm", "energy_lower", "energy_upper"};
+const std::vector<std::string> &names_of_bounds();
 /// The interval that an output is in, where the answer has outputs NAME_lower and NAME_upper.
 inline std::optional<std::array<double, 2>> interval_of(const Outputs &outputs,
                                                         const std::string &name) {
@@ -147,30 +146,6 @@ void set_penetration(const std::array<double, 2> &penetration, Outputs &outputs)
 
 /// Throws failure, naming it, where an output is not finite, unless it has no value.
 void check_finite(const Outputs &outputs);
-
-/// What is not accurate in this answer because contact reaches the end of its boundary, because so
-/// few nodes are in contact, or stick, at the interface where that is worst, or because none is
-/// though the bodies overlap, and how far it may be off; empty: nothing.
-std::string resolution_warning(const Outputs &outputs);
-
-/// A strain or a rotation, in radians, that linear elasticity is not for.
-constexpr double large_strain = 0.3;
-
-/// Why small kinematics do not hold at this answer; empty: they do.
-std::string validity_warning(const Outputs &outputs);
-
-/// The warnings of several answers.
-struct ResolutionTally {
-  long all = 0;     ///< answers
-  long at_ends = 0; ///< where contact reaches the end of its boundary
-  long coarse = 0;  ///< others with a warning
-  long invalid = 0; ///< where small kinematics do not hold
-  long held = 0;    ///< where imposed values hold nodes below a surface
-  std::string first_end, first, first_invalid, first_held; ///< the first warning of each
-  void add(const Outputs &outputs);
-  /// One line for each of these, where there are any. `answers`: what they are called.
-  void print(std::ostream &out, const char *answers = "answers") const;
-};
 
 /// Whether a table of rbvi can have a column of this name beside the parameters.
 bool is_table_column(const std::string &name);

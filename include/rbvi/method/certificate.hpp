@@ -52,4 +52,19 @@ struct Lifting {
 std::optional<Lifting> lift(const ColumnSource &columns, Index count, const std::vector<int> &own,
                             const Vector &s, const Vector &multiplier, double roundoff);
 
+/// Of an output p . l_n: with v the lifting functions times `weights`, |p . (l_n - l_N)| is at most
+/// |v| times ErrorBound::multiplier plus `far` times ErrorBound::gap.
+struct LinearOutput {
+  Vector weights;
+  double far;
+};
+
+/// One for each column of `outputs`, p at the rows of B_n. `columns`, `count`, `own`, `multiplier`:
+/// as in lift; `left`: the gaps of u_N - z, >= 0. Nothing where a row presses without a function of
+/// its own, or might.
+std::optional<std::vector<LinearOutput>> linear_outputs(const ColumnSource &columns, Index count,
+                                                        const std::vector<int> &own,
+                                                        const Vector &multiplier,
+                                                        const Vector &left, const Matrix &outputs);
+
 } // namespace rbvi

@@ -29,15 +29,18 @@ struct AnswerBound {
   bool certified;
   /// Of the energy of u, what imposed values add to it included; without friction.
   std::optional<Interval> energy{};
+  /// Likewise of what the multipliers add up to: their integral, their push on the first body along
+  /// y.
+  std::optional<Interval> normal_force{}, reaction{};
 };
 
 /// `lambda`: of the answer, at the dual dofs; `imposed_energy`: what of its energy is that of
-/// imposed values alone. Nothing where the model keeps nothing for it, where
-/// multipliers push or gaps are open at nodes of which it knows nothing, or where A is outside of
-/// what its references span.
+/// imposed values alone; `forces`: whether they are asked for. Nothing where the model keeps
+/// nothing for it, where multipliers push or gaps are open at nodes of which it knows nothing, or
+/// where A is outside of what its references span.
 std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scene,
                                     const Contact &contact, const ReducedAnswer &answer,
-                                    const Vector &lambda, double imposed_energy);
+                                    const Vector &lambda, double imposed_energy, bool forces);
 
 /// Of CertificateModel::by_law. `laws`: of the columns of the dual basis at mu.
 AnswerBound bound_by_law(const ReducedModel &model, const Scene &scene, const NodeLaws &laws,

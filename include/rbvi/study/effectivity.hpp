@@ -6,6 +6,7 @@
 #include "rbvi/sweep/sweep.hpp"
 
 #include <iosfwd>
+#include <map>
 
 namespace rbvi {
 
@@ -14,9 +15,9 @@ struct Effectivities {
   std::vector<double> indicators; ///< likewise of indicators
   int exact = 0; ///< answers whose error is that of the high-fidelity solver, 1e-8 of |u|, or less
   int without = 0; ///< answers that have no bound
-  /// Of intervals of outputs, over their size.
-  std::vector<double> widths;
-  /// Bounds below the error, and energies outside of their interval, by more than the error of the
+  std::map<std::string, double>
+      widths; ///< of the intervals of each output, the largest over its size
+  /// Bounds below the error, and outputs outside of their interval, by more than the error of the
   /// high-fidelity solver.
   int wrong = 0;
 };
@@ -26,7 +27,7 @@ struct Effectivities {
 Effectivities effectivities(Problem &problem, const ReducedModel &model,
                             const std::vector<Sample> &samples);
 
-/// "Bounds of u: 1.01 to 1.43 times the error, median 1.2, over 12 answers", and of the energy.
+/// "Bounds of u: 1.01 to 1.43 times the error, median 1.2, over 12 answers", and of intervals.
 void print_effectivities(std::ostream &out, const Effectivities &found);
 
 } // namespace rbvi
