@@ -237,7 +237,7 @@ void warn_of_unvalidated(long answers, std::ostream &out) {
 namespace {
 
 /// What is to be said of all rows. Throws failure where one has no answer.
-void conclude(const ReducedModel &model, const Tally &tally, bool tells_errors,
+void conclude(const ReducedModel &model, const Scene &scene, const Tally &tally, bool tells_errors,
               std::ostream &warnings) {
   warn_of_violation(model, tally.violation, warnings);
   warn_of_balance(warnings, model);
@@ -245,7 +245,7 @@ void conclude(const ReducedModel &model, const Tally &tally, bool tells_errors,
   warn_of_unvalidated(tally.unvalidated, warnings);
   if (tells_errors && expected_errors(model).count == 0) print_expected_errors(warnings, model);
   tally.resolution.print(warnings);
-  warn_of_locking(tally.locking, warnings);
+  warn_of_elements(scene, tally.locking, warnings);
   warn_of_other_answers(warnings, tally.not_alone, tally.rows - tally.unanswered);
   if (tally.unanswered > 0)
     throw failure(
@@ -298,7 +298,7 @@ void answer_many(const OnlineArguments &arguments, const std::vector<OnlineSolve
   file.finish();
   if (trace_file) trace_file->finish();
   if (to_file) report(arguments, solver, tally, out);
-  conclude(solver.model(), tally, !to_file, to_file ? out : std::cerr);
+  conclude(solver.model(), scene, tally, !to_file, to_file ? out : std::cerr);
 }
 
 } // namespace rbvi

@@ -181,7 +181,7 @@ std::string warnings_of(const OnlineSolver &solver, const Mu &mu, const ReducedA
   resolution.add(outputs);
   resolution.print(out);
   const FullMu all = expand(scene.parameters, mu);
-  warn_of_locking(locking_ratio(scene, all, material_points(solver.contact())), out);
+  warn_of_elements(scene, locking_ratio(scene, all, material_points(solver.contact())), out);
   warn_of_other_answers(out, solution.to_other > 0 ? 1 : 0, 1);
   return out.str();
 }

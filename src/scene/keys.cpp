@@ -158,7 +158,7 @@ const std::vector<CaseKey> all_keys{
     {"contact.*", "nitsche_gamma0", "number",
      "Nitsche's gamma is this times (lambda + 2 shear modulus) over the length of an edge"},
     {"contact.*", "lumped", "no | yes",
-     "vertex quadrature in b and g; default: no, above an obstacle yes"},
+     "vertex quadrature in b and g; default: no, above an obstacle yes (no: peaks overshoot)"},
     {"contact.*", "multiplier", "p0 | p1",
      "two bodies: constant on pairs of edges (of degree 2 on edges), or continuous"},
     {"contact.*", "projection", "normal | vertical",

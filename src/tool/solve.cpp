@@ -86,8 +86,8 @@ bool warn_of_answer(const Problem &problem, const Mu &mu, const HfSolution &solu
   resolution.add(solution.outputs);
   resolution.print(lines);
   warn_of_other_answers(lines, solution.to_other > 0 ? 1 : 0, 1);
-  warn_of_locking(
-      locking_ratio(scene, expand(scene.parameters, mu), material_points(problem.contact())),
+  warn_of_elements(
+      scene, locking_ratio(scene, expand(scene.parameters, mu), material_points(problem.contact())),
       lines);
   out << lines.str();
   return !lines.str().empty();

@@ -56,7 +56,7 @@ void tell_of_samples(const Scene &scene, const Contact &contact, const std::vect
   if (in_load_steps > 0)
     out << in_load_steps << " of " << samples.size() << " samples took load steps\n";
   tally.print(out, "samples");
-  warn_of_locking(locking, out);
+  warn_of_elements(scene, locking, out);
 }
 
 } // namespace rbvi

@@ -36,12 +36,26 @@ TEST(Locking, IsOfTheMaterialBesideContactAndOfDegreeOneAlone) {
 
 TEST(Locking, IsToldInOneLineWithTheRemedy) {
   std::ostringstream out, silent;
-  warn_of_locking(0.499, out);
+  warn_of_elements({}, 0.499, out);
   EXPECT_TRUE(out.str().starts_with("warning: Poisson's ratio is 0.499"));
   EXPECT_TRUE(out.str().ends_with("use -degree 2\n"));
   EXPECT_EQ(std::ranges::count(out.str(), '\n'), 1);
-  warn_of_locking(0, silent);
+  warn_of_elements({}, 0, silent);
   EXPECT_EQ(silent.str(), "");
+}
+
+TEST(Overshoot, IsToldOfRegionsByExactQuadrature) {
+  const auto told = [](ContactRecipe contact) {
+    Scene scene;
+    scene.contacts = {std::move(contact)};
+    std::ostringstream out;
+    warn_of_elements(scene, 0, out);
+    return out.str();
+  };
+  using enum InterfaceEntities::Kind;
+  EXPECT_NE(told({.entities = {cells, {}}}).find("lumped: yes"), std::string::npos);
+  EXPECT_EQ(told({.entities = {cells, {}}, .nodal = true}), "");
+  EXPECT_EQ(told({.entities = {facets, {}}}), "");
 }
 
 } // namespace

@@ -1,5 +1,6 @@
-// Elements of degree 1 lock where the material is nearly incompressible: they have too few
-// displacements without a change of volume.
+// Where elements are known to be wrong: those of degree 1 lock where the material is nearly
+// incompressible, as they have too few displacements without a change of volume; multipliers over a
+// region overshoot unless the constraint is one of single nodes.
 #pragma once
 
 #include "rbvi/core/scene.hpp"
@@ -19,7 +20,8 @@ struct MaterialPoint {
 double locking_ratio(const Scene &scene, const FullMu &all_parameters,
                      const std::vector<MaterialPoint> &points);
 
-/// A line of warning with the remedy, unless the ratio is 0.
-void warn_of_locking(double ratio, std::ostream &out);
+/// Lines of warning with the remedy, where `ratio` is one that locks (not 0), and of a scene with
+/// contact over a region by exact quadrature.
+void warn_of_elements(const Scene &scene, double ratio, std::ostream &out);
 
 } // namespace rbvi
