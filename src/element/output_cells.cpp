@@ -291,6 +291,11 @@ bool has_cells(const OutputForm &output) {
   return output.place != OutputForm::Place::contact;
 }
 
+bool is_extreme(const OutputForm &output) {
+  return has_cells(output) && output.place != OutputForm::Place::point &&
+         (output.kind == OutputForm::Kind::max || output.kind == OutputForm::Kind::min);
+}
+
 double output_value(const OutputForm &form, const OutputSums &sums) {
   switch (form.kind) {
   case OutputForm::Kind::integral:
@@ -340,6 +345,19 @@ double reaction_value(const SeparatedReaction &reaction, const Scene &scene, con
     force +=
         coefficient_of(term_of(scene, reaction.terms[q]), mu) * (of_terms[q] + reaction.given[q]);
   return image_count(scene.mirrors) * force;
+}
+
+std::vector<double> extremes_of_parts(const Scene &scene, int output, const FullMu &mu,
+                                      const OutputCells &cells, const Vector &u) {
+  const OutputState state{scene, mu, cells, u};
+  const OutputForm &form = scene.outputs[output];
+  std::vector<double> values;
+  for (const OutputPart &part : parts_of(cells, output)) {
+    OutputLines lines(form, mu, scene.mirrors);
+    add_simplex(state, part, lines);
+    values.push_back(output_value(form, lines.sums()));
+  }
+  return values;
 }
 
 double cell_output(const Scene &scene, int output, const FullMu &mu, const OutputCells &cells,

@@ -1,7 +1,6 @@
 #include "rbvi/model/cell_outputs.hpp"
 
 #include "rbvi/element/imposed.hpp"
-#include "rbvi/element/lagrange.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -10,51 +9,18 @@ namespace rbvi {
 
 namespace {
 
-/// The position of each that is taken among those that are; -1 of the others.
-std::vector<int> numbered(const std::vector<bool> &taken) {
-  std::vector<int> numbers(taken.size(), -1);
-  int next = 0;
-  for (std::size_t i = 0; i < taken.size(); ++i)
-    if (taken[i]) numbers[i] = next++;
-  return numbers;
-}
-
 /// The parts of some outputs, with their cells and nodes alone.
 OutputModel restricted(const OutputModel &model, const Scene &scene,
                        const std::function<bool(int output)> &keeps) {
-  const OutputCells &cells = model.cells;
-  const auto per_cell = static_cast<std::size_t>(nodes_per_cell(scene.dim, scene.degree));
-  const auto components = static_cast<std::size_t>(scene.components);
-  std::vector<bool> cell_taken(cells.cells.size() / per_cell), node_taken(cells.nodes.size());
-  OutputModel result;
-  for (const OutputCells::Part &part : cells.parts) {
-    if (!keeps(part.output)) continue;
-    result.cells.parts.push_back(part);
-    cell_taken[static_cast<std::size_t>(part.cell)] = true;
-  }
-  for (std::size_t k = 0; k < cells.cells.size(); ++k)
-    if (cell_taken[k / per_cell]) node_taken[static_cast<std::size_t>(cells.cells[k])] = true;
-  const std::vector<int> cell_number = numbered(cell_taken), node_number = numbered(node_taken);
-  for (OutputCells::Part &part : result.cells.parts)
-    part.cell = cell_number[static_cast<std::size_t>(part.cell)];
-  for (std::size_t k = 0; k < cells.cells.size(); ++k)
-    if (cell_taken[k / per_cell])
-      result.cells.cells.push_back(node_number[static_cast<std::size_t>(cells.cells[k])]);
-  for (std::size_t cell = 0; cell < cells.materials.size(); ++cell)
-    if (cell_taken[cell]) result.cells.materials.push_back(cells.materials[cell]);
-  std::vector<Index> nodes, dofs;
-  for (std::size_t node = 0; node < node_taken.size(); ++node) {
-    if (!node_taken[node]) continue;
-    nodes.push_back(static_cast<Index>(node));
-    result.cells.nodes.push_back(cells.nodes[node]);
-    for (std::size_t dof = node * components; dof < (node + 1) * components; ++dof) {
-      dofs.push_back(static_cast<Index>(dof));
-      if (!cells.imposed_by.empty()) result.cells.imposed_by.push_back(cells.imposed_by[dof]);
-    }
-  }
-  result.cells.points = cells.points(nodes, Eigen::all);
-  result.basis = model.basis(dofs, Eigen::all);
-  return result;
+  std::vector<bool> parts;
+  for (const OutputCells::Part &part : model.cells.parts)
+    parts.push_back(keeps(part.output));
+  const auto [cells, nodes] = some_of(model.cells, scene, parts);
+  std::vector<Index> dofs;
+  for (const Index node : nodes)
+    for (Index c = 0; c < scene.components; ++c)
+      dofs.push_back(node * scene.components + c);
+  return {cells, model.basis(dofs, Eigen::all)};
 }
 
 } // namespace

@@ -8,6 +8,7 @@
 #include "rbvi/mor/fields.hpp"
 #include "rbvi/mor/nodal_dual_basis.hpp"
 #include "rbvi/mor/operator_entries.hpp"
+#include "rbvi/mor/output_candidates.hpp"
 #include "rbvi/mor/stiffness_change.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/columns.hpp"
@@ -261,8 +262,9 @@ void project_springs(const Problem &problem, const std::vector<Sample> &samples,
 }
 
 /// The primal basis at the nodes that outputs are taken from. Collective.
-void project_outputs(const Problem &problem, Mat basis, OutputModel &outputs) {
-  outputs.cells = problem.output_cells();
+void project_outputs(const Problem &problem, const std::vector<Sample> &samples, Mat basis,
+                     OutputModel &outputs) {
+  outputs.cells = candidate_cells(problem.comm(), problem.scene(), problem.output_cells(), samples);
   const std::vector<int> &nodes = outputs.cells.nodes;
   if (nodes.empty()) return;
   const Index components = problem.dofs().components;
@@ -345,7 +347,7 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
     project_exact(problem, samples, affine, basis.get(), model);
     project_springs(problem, samples, basis.get(), model.body);
     model.contact.trace = restrict_to(problem.trace(), basis.get());
-    project_outputs(problem, basis.get(), model.outputs);
+    project_outputs(problem, samples, basis.get(), model.outputs);
     project_snapshots(problem, samples, affine, basis.get(), model);
   }
   restrict_trace(problem, samples.front().mu, model);

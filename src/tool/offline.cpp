@@ -11,6 +11,7 @@
 #include "rbvi/model/self_check.hpp"
 #include "rbvi/model/training_samples.hpp"
 #include "rbvi/mor/fields.hpp"
+#include "rbvi/mor/output_candidates.hpp"
 #include "rbvi/mor/reduced_balance.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/scene/stored_scene.hpp"
@@ -104,7 +105,9 @@ std::optional<ReducedModel> read_kept(const OfflineOptions &options, const Probl
     if (!is_made_of(model, options, problem, sweep) ||
         scene_difference(model.scene.tree, scene.tree, Compared::answers_and_outputs).empty())
       return std::nullopt;
-    model.outputs = {problem.output_cells(), {}};
+    model.outputs.cells =
+        candidate_cells(MPI_COMM_SELF, scene, problem.output_cells(), sweep.samples);
+    model.outputs.basis = {};
     if (const std::vector<int> &nodes = model.outputs.cells.nodes; !nodes.empty()) {
       ReducedModel with_fields = read_model(path, *options.registry);
       model.outputs.basis = rows_at(with_fields.fields.basis, nodes, scene.components);

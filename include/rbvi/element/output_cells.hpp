@@ -34,6 +34,23 @@ inline int contact_of_part(const OutputCells::Part &part) {
 /// Whether an output needs cells.
 bool has_cells(const OutputForm &output);
 
+/// Some of the parts, with their cells and nodes alone.
+struct SomeOutputCells {
+  OutputCells cells;
+  std::vector<Index> nodes; ///< which of all nodes its own are, rising
+};
+/// `keeps`: of each part.
+SomeOutputCells some_of(const OutputCells &cells, const Scene &scene,
+                        const std::vector<bool> &keeps);
+
+/// Whether an output is the largest or the smallest value over cells.
+bool is_extreme(const OutputForm &output);
+
+/// Of output number `output`, which is_extreme, the value on each of its parts; not finite where
+/// there is none. As cell_output.
+std::vector<double> extremes_of_parts(const Scene &scene, int output, const FullMu &mu,
+                                      const OutputCells &cells, const Vector &u);
+
 /// Value of output number `output` of these cells. `u`: at the nodes, node * components + c, with
 /// imposed values and without the motion. Not finite where there is nothing, or a field is not
 /// there.

@@ -1,0 +1,54 @@
+// The largest and smallest values of a model come from few cells, and are those of all.
+#include "named_outputs.hpp"
+
+#include "rbvi/mor/output_candidates.hpp"
+
+namespace rbvi::output_candidates_test {
+
+using named_outputs_test::pressed;
+using named_outputs_test::values_of;
+using testing_reduced::Reduced;
+
+const std::string extremes = "  worst: {max: von_mises, in: all}\n"
+                             "  lowest: {min: uy, in: all, where: x > 0.3}\n"
+                             "  side: {max: sigma_xy, at: sides}\n",
+                  hold = "imposed: {top: {at: top, ux: d, uy: -d}}\n";
+
+TEST(OutputCandidates, AreFewAndHoldTheExtremes) {
+  Reduced made(pressed(hold, extremes, "plane_strain"), "grid:3,3");
+  made.reduce(testing_reduced::everything());
+  const OutputCells &kept = made.model.outputs.cells, &all = made.problem.output_cells();
+  EXPECT_LT(kept.parts.size(), all.parts.size() / 2);
+  EXPECT_LT(kept.nodes.size(), all.nodes.size());
+  const auto unseen = testing_reduced::solve_all(
+      made.problem, parse_set(made.problem.scene().parameters, "random:6:3"));
+  if (rank_of(PETSC_COMM_WORLD) != 0) return;
+  OnlineSolver online(made.model);
+  for (const Sample &sample : unseen) {
+    std::map<std::string, double> full = values_of(sample.outputs),
+                                  reduced =
+                                      values_of(online.outputs(sample.mu, online.solve(sample.mu)));
+    for (const char *name : {"worst", "lowest", "side"})
+      EXPECT_NEAR(reduced[name], full[name], 1e-6 * std::abs(full[name])) << name;
+  }
+}
+
+/// What a mean needs stays, and so does all where nothing is extreme.
+TEST(OutputCandidates, LeaveOtherOutputsTheirCells) {
+  const Problem both(
+      PETSC_COMM_WORLD,
+      pressed(hold, extremes + "  mean: {mean: von_mises, in: all}\n", "plane_strain"), {}),
+      mean(PETSC_COMM_WORLD, pressed(hold, "  mean: {mean: von_mises, in: all}\n", "plane_strain"),
+           {});
+  const auto count = [](const OutputCells &cells, int output) {
+    return std::ranges::count(cells.parts, output, &OutputCells::Part::output);
+  };
+  const OutputCells none = candidate_cells(PETSC_COMM_WORLD, both.scene(), both.output_cells(), {});
+  const int last = static_cast<int>(both.scene().outputs.size()) - 1;
+  EXPECT_EQ(count(none, last), count(both.output_cells(), last));
+  EXPECT_EQ(std::ssize(none.parts), count(none, last)) << "without a sample no cell is extreme";
+  EXPECT_EQ(candidate_cells(PETSC_COMM_WORLD, mean.scene(), mean.output_cells(), {}).parts.size(),
+            mean.output_cells().parts.size());
+}
+
+} // namespace rbvi::output_candidates_test
