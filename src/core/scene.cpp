@@ -102,6 +102,10 @@ bool constant_stiffness(const Scene &scene) {
   return is_constant(scene.a, scene.parameters);
 }
 
+bool stiffness_scales(const Scene &scene) {
+  return !constant_stiffness(scene) && parameters_beside_common(scene.a, scene.parameters).empty();
+}
+
 const SceneEntry &entry_of(const Registry &registry, const std::string &scene) {
   std::vector<std::string> names;
   for (const SceneEntry &entry : registry) {

@@ -113,8 +113,7 @@ private:
   }
 
   const bool part_fits_ = ScaledPart::fits(problem_.scene());
-  const bool proportional_ =
-      ProportionalBody::fits(problem_.scene()) && problem_.free_bodies().empty();
+  const bool proportional_ = stiffness_scales(problem_.scene()) && problem_.free_bodies().empty();
   std::unique_ptr<ScaledPart> part_;        ///< where a part of A is scaled, from the second mu on
   std::unique_ptr<ProportionalBody> whole_; ///< where all of it is, likewise
   int solves_ = 0;

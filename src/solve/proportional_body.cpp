@@ -19,10 +19,6 @@ double ratio_of(const RowVector &row, const RowVector &other) {
 
 } // namespace
 
-bool ProportionalBody::fits(const Scene &scene) {
-  return !constant_stiffness(scene) && parameters_beside_common(scene.a, scene.parameters).empty();
-}
-
 ProportionalBody::ProportionalBody(const Problem &problem)
     : FullBody(problem.trace().size), problem_(problem),
       ksp_(make_direct_solver(problem.comm(), "hf_")) {}

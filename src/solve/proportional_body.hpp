@@ -9,10 +9,7 @@ namespace rbvi {
 
 class ProportionalBody : public FullBody {
 public:
-  /// Whether A varies, by a common factor of its terms alone.
-  static bool fits(const Scene &scene);
-
-  /// `problem` must outlive it. Factorises at the first set().
+  /// Of a scene whose stiffness_scales. `problem` must outlive it. Factorises at the first set().
   explicit ProportionalBody(const Problem &problem);
   /// A of the next calls, that of these operators. Not collective.
   void set(const Operators &op);

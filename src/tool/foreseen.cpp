@@ -39,12 +39,6 @@ StageRow snapshot_row(std::size_t training, const Groups &groups, const SweepRep
   return {stage::snapshots, what};
 }
 
-/// Whether A is in proportion to a coefficient of mu: factors, and displacements under unit loads,
-/// then serve all of a sweep by columns of the compliance (solve/proportional_body.hpp).
-bool scales_as_a_whole(const Scene &scene) {
-  return !constant_stiffness(scene) && parameters_beside_common(scene.a, scene.parameters).empty();
-}
-
 /// What of the solves is done once for all mu.
 std::string factorisation_text(const Setup &setup) {
   if (!has_multipliers(setup.scene))
@@ -53,7 +47,7 @@ std::string factorisation_text(const Setup &setup) {
     return "A does not depend on mu: one for the sweep, one condensed operator";
   if (setup.hf.method == HfMethod::active_set && ScaledPart::fits(setup.scene))
     return "a part of A is scaled: three for the sweep of each group, the part is eliminated once";
-  if (setup.hf.method == HfMethod::active_set && scales_as_a_whole(setup.scene))
+  if (setup.hf.method == HfMethod::active_set && stiffness_scales(setup.scene))
     return "all of A is scaled: two for the sweep of each group, columns of contact are kept";
   return "A depends on mu: one for each solve";
 }
@@ -111,7 +105,7 @@ double snapshot_seconds(const Scene &scene, const RunSizes &size, double samples
   const double of_group = std::ceil(samples * size.group / size.ranks),
                factor = factor_entries(scene, size.dofs),
                factorisation = factorisation_seconds(scene, size.dofs);
-  if (!size.eliminated && scales_as_a_whole(scene) && size.multipliers > 0)
+  if (!size.eliminated && stiffness_scales(scene) && size.multipliers > 0)
     return 2 * factorisation + size.multipliers * factor * column_seconds +
            of_group * (scaled_solves * solve_seconds * factor +
                        law_seconds * size.multipliers * size.multipliers);

@@ -274,6 +274,9 @@ const Coordinate *coordinate_of(const Scene &scene, int parameter);
 
 /// Whether a is the same for all values of the free parameters.
 bool constant_stiffness(const Scene &scene);
+/// Whether A varies, by a common coefficient of its terms alone: factors, and displacements under
+/// unit loads, then serve all mu.
+bool stiffness_scales(const Scene &scene);
 
 /// Throws bad_input for an unknown scene, naming those that exist.
 const SceneEntry &entry_of(const Registry &registry, const std::string &scene);
