@@ -10,6 +10,7 @@ import re
 import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
@@ -76,6 +77,13 @@ def bent_ball(folder):
     return ["-case", folder / "case.yaml", *CASE[2:]]
 
 
+def modes_are_bounded(tool, run, case, free, friction, kind):
+    """Of modes alone, 3e-2 to 3e-1 off."""
+    called(tool, "offline", *case, *free, "-friction", friction, "-train", "random:8:1", "-valid", "random:2:2",
+           "-response_tolerance", "0", "-certify", "-out", run)
+    bounds(tool, run, kind)
+
+
 def energy_is_bounded(tool, bent, folder):
     """Without friction verify compares high-fidelity energies with the interval that each answer tells."""
     case = Path(bent[1])
@@ -100,13 +108,13 @@ def main(programs, out):
                "random:2:2", "-out", out / f"np{ranks}")
     called(tool, "verify", "-out", out / "np2")
     bent = bent_ball(out / "bent")
-    for friction, kind in ((0, "Bounds"), (0.2, "Indicators")):  # of modes alone, 3e-2 to 3e-1 off
-        for name, case, free in (("modes", CASE, FREE), ("bent", bent, BENT)):
-            run = out / f"{name}_{friction}"
-            called(tool, "offline", *case, *free, "-friction", friction, "-train", "random:8:1", "-valid", "random:2:2",
-                   "-response_tolerance", "0", "-certify", "-out", run)
-            bounds(tool, run, kind)
-    energy_is_bounded(tool, bent, out / "smooth")
+    with ThreadPoolExecutor(2) as pool:
+        runs = [pool.submit(energy_is_bounded, tool, bent, out / "smooth")]
+        for friction, kind in ((0, "Bounds"), (0.2, "Indicators")):
+            for name, case, free in (("modes", CASE, FREE), ("bent", bent, BENT)):
+                runs.append(pool.submit(modes_are_bounded, tool, out / f"{name}_{friction}", case, free, friction, kind))
+        for run in runs:
+            run.result()
     for mu in UNSEEN:
         full = numbers(called(tool, "solve", *CASE, *FREE, "-mu", mu))
         one, two = (numbers(called(online, out / f"np{ranks}/model.h5", "--mu", mu)) for ranks in (1, 2))
