@@ -59,7 +59,7 @@ double violation(const CollocatedProblem &p, const Vector &x) {
     const double scale = std::max(bounds[j], largest * size);
     worst = larger(worst, relative(std::abs(traction[j]) - bounds[j], scale));
     for (const double side : {-1.0, 1.0}) {
-      if (side * traction[j] < bounds[j] - 1e-11 * scale) continue;
+      if (s == 0 || side * traction[j] < bounds[j] - 1e-11 * scale) continue;
       normals.conservativeResize(Eigen::NoChange, normals.cols() + 1);
       normals.rightCols(1) = side * unit.row(j).transpose();
     }

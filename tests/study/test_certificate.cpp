@@ -1,6 +1,7 @@
 // Bounds of reduced answers against true errors: of good models, and of models that are wrong on
 // purpose.
 #include "disk.hpp"
+#include "rbvi/model/certificate.hpp"
 #include "rbvi/model/online.hpp"
 #include "rbvi/mor/certificate.hpp"
 #include "rbvi/study/effectivity.hpp"
@@ -67,6 +68,16 @@ void expect_bounds(const Effectivities &found, const Case &c, double width) {
   if (frictionless) EXPECT_LE(found.widths.at("normal_force"), 10 * std::sqrt(width));
 }
 
+double energy_norm(Problem &problem, const Mu &mu, const Vector &u) {
+  const Handle<Vec> x = from_natural(problem.dofs(), u);
+  Handle<Vec> product;
+  PetscScalar square = 0;
+  RBVI_CALL(VecDuplicate(x.get(), product.put()));
+  RBVI_CALL(MatMult(problem.assemble(mu).a, x.get(), product.get()));
+  RBVI_CALL(VecDot(x.get(), product.get(), &square));
+  return std::sqrt(std::max(0.0, square));
+}
+
 } // namespace
 
 TEST_P(OfDisk, BoundsWhatTheModelLeaves) {
@@ -81,6 +92,42 @@ TEST_P(OfDisk, BoundsWhatTheModelLeaves) {
   const ReducedModel poor =
       leading(r.model, std::max(3, r.model.body.modes / 2), r.model.contact.generators);
   expect_bounds(effectivities(r.problem, poor, unseen), c, 0.3);
+}
+
+/// Any displacement and any multipliers have a bound, so those of a model that lost a node or whose
+/// stiffness is off.
+TEST_P(OfDisk, BoundsWhatIsWrongOnPurpose) {
+  const Case &c = GetParam();
+  if (!c.bound) return;
+  Reduced r(disk(c.free, c.options), "grid:2,2");
+  r.reduce(certified(c.reduction));
+  OnlineSolver solver(r.model);
+  for (const Sample &sample :
+       solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:4:5"))) {
+    const ReducedAnswer answer = solver.solve(sample.mu, true);
+    const Vector lambda = solver.multiplier(answer);
+    Vector dropped = lambda, alternating = answer.u;
+    Index peak = 0;
+    lambda.head(solver.contact().nodes()).maxCoeff(&peak);
+    dropped[peak] = 0;
+    for (Index i = 0; i < alternating.size(); ++i)
+      alternating[i] *= i % 2 == 0 ? 1.3 : 0.7;
+    const std::vector<std::pair<Vector, Vector>> wrong{{answer.u, dropped},
+                                                       {answer.u, 1.3 * lambda},
+                                                       {1.3 * answer.u, lambda},
+                                                       {0 * answer.u, 0 * lambda},
+                                                       {alternating, lambda}};
+    for (const auto &[u, l] : wrong) {
+      ReducedAnswer other = answer;
+      other.u = u;
+      const auto bound = bound_of(r.model, r.problem.scene(), solver.contact(), other, l, 0, false);
+      ASSERT_TRUE(bound);
+      const double error = energy_norm(r.problem, sample.mu, sample.u - solver.field(other)),
+                   size = energy_norm(r.problem, sample.mu, sample.u);
+      EXPECT_GE(bound->error, error - 1e-8 * size);
+      EXPECT_LE(bound->error, 3 * size);
+    }
+  }
 }
 
 } // namespace rbvi::certificate_study_test
