@@ -12,13 +12,14 @@ namespace rbvi {
 
 namespace {
 
-/// Adds factor * sum of theta_q (block q of `terms`) x to `result`, of few entries of x that are
-/// not zero.
+/// Adds factor * sum of theta_q (block q of `terms`) x to the first entries of `result`, of few
+/// entries of x that are not zero.
 void add_terms(const Matrix &terms, const Vector &theta, const Vector &x, double factor,
                Vector &result) {
   for (Index q = 0; q < theta.size(); ++q)
     for (Index k = 0; k < x.size(); ++k)
-      if (x[k] != 0) result += factor * theta[q] * x[k] * terms.col(q * x.size() + k);
+      if (x[k] != 0)
+        result.head(terms.rows()) += factor * theta[q] * x[k] * terms.col(q * x.size() + k);
 }
 
 /// What the condition leaves at the answer, and what of it is round-off.
@@ -74,7 +75,7 @@ Residual residual_of(const CertificateModel &certificate, const Vector &theta_a,
   for (Index j = 0; j < count; ++j) {
     const CertificateReference &at = certificate.references[j];
     references.col(j) = at.theta;
-    Vector residual = Vector::Zero(at.of_basis.rows()), lifted = residual;
+    Vector residual = Vector::Zero(at.of_loads.rows()), lifted = residual;
     add_terms(at.of_basis, theta_a, u, -1, residual);
     add_terms(at.of_contact, Vector::Ones(1), pushed, -1, residual);
     add_terms(at.of_loads, Vector::Ones(1), theta_f, 1, residual);
@@ -82,10 +83,10 @@ Residual residual_of(const CertificateModel &certificate, const Vector &theta_a,
     minus[j] = (residual - lifted).norm();
     plus[j] = (residual + lifted).norm();
     if (j > 0) continue;
-    Vector own = Vector::Zero(residual.size()); // coordinates of z
+    Vector own = Vector::Zero(at.of_lifting.rows()); // coordinates of z
     add_terms(at.of_lifting, at.theta, z, 1, own);
-    result.work = residual.dot(own);
-    result.square = lifted.dot(own);
+    result.work = residual.head(own.size()).dot(own);
+    result.square = lifted.head(own.size()).dot(own);
   }
   result.minus = norm_over_references(references, theta_a, minus);
   result.plus = norm_over_references(references, theta_a, plus);

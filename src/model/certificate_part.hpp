@@ -25,10 +25,15 @@ template <class Store, class Model> void list_certificate(const Store &store, Mo
       [&](const std::string &at, auto &reference) {
         store(at + "/theta", reference.theta, Shape{terms, 1});
         store(at + "/of_basis", reference.of_basis, Shape{any_size, terms * model.primal_size()});
-        const Index rank = reference.of_basis.rows();
-        store(at + "/of_lifting", reference.of_lifting, Shape{rank, terms * lifting});
-        store(at + "/of_loads", reference.of_loads, Shape{rank, model.body.f.size()});
-        store(at + "/of_contact", reference.of_contact, Shape{rank, std::ssize(certificate.dofs)});
+        store(at + "/of_lifting", reference.of_lifting, Shape{any_size, terms * lifting});
+        store(at + "/of_contact", reference.of_contact,
+              Shape{any_size, std::ssize(certificate.dofs)});
+        store(at + "/of_loads", reference.of_loads, Shape{any_size, model.body.f.size()});
+        store.ask(at + " has other coordinates", [&] {
+          return reference.of_basis.rows() <= reference.of_lifting.rows() &&
+                 reference.of_lifting.rows() <= reference.of_contact.rows() &&
+                 reference.of_contact.rows() <= reference.of_loads.rows();
+        });
       });
   store.ask("certificate/own does not fit", [&] {
     return certificate.references.empty() ||

@@ -158,22 +158,22 @@ CertificateReference reference_at(Problem &problem, const Mu &mu, Mat basis, con
   const Scene &scene = problem.scene();
   const std::vector<double> theta = exact_coefficients(
       scene.a, problem.a_terms().split, scene.parameters, expand(scene.parameters, mu));
+  CertificateReference reference;
+  reference.theta = Eigen::Map<const Vector>(theta.data(), std::ssize(theta));
   Representers representers(problem, op, basis);
+  reference.of_basis = representers.of_terms(basis);
   if (lifting.get() == nullptr)
     lifting =
         representers.responses(extension(problem.trace(), op.b.transpose() * forces, op.a).get());
   representers.span_terms(lifting.get());
-  representers.span(extension(problem.trace(), unit_loads(problem.trace().size, dofs), op.a).get());
-  const Handle<Mat> loads = loads_of(problem, op.a);
-  const bool has_loads = !problem.f_terms().exact.empty();
-  if (has_loads) representers.span(loads.get());
-  CertificateReference reference;
-  reference.theta = Eigen::Map<const Vector>(theta.data(), std::ssize(theta));
-  reference.of_basis = representers.of_terms(basis);
   reference.of_lifting = representers.of_terms(lifting.get());
-  reference.of_loads =
-      has_loads ? representers.of_loads(loads.get()) : Matrix(reference.of_basis.rows(), 0);
+  representers.span(extension(problem.trace(), unit_loads(problem.trace().size, dofs), op.a).get());
   reference.of_contact = representers.at_contact()(dofs, Eigen::all).transpose();
+  reference.of_loads = Matrix(reference.of_contact.rows(), 0);
+  if (problem.f_terms().exact.empty()) return reference;
+  const Handle<Mat> loads = loads_of(problem, op.a);
+  representers.span(loads.get());
+  reference.of_loads = representers.of_loads(loads.get());
   return reference;
 }
 

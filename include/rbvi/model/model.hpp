@@ -228,13 +228,14 @@ struct OutputModel {
 };
 
 /// Norms of residuals in A(mu_j)^-1 at one reference parameter mu_j, exact: each block has a column
-/// for a part of the residual, in coordinates that are orthonormal there.
+/// for a part of the residual, in coordinates that are orthonormal there. Those of a block come
+/// before what the blocks after it add, so that it has zeros behind its rows.
 struct CertificateReference {
   Vector theta;      ///< of the terms of A at mu_j
-  Matrix of_basis;   ///< rank x (terms * n): A_q times the primal basis, term by term
-  Matrix of_lifting; ///< rank x (terms * m): A_q times the lifting functions
+  Matrix of_basis;   ///< (terms * n) columns: A_q times the primal basis, term by term
+  Matrix of_lifting; ///< (terms * m) columns: A_q times the lifting functions
+  Matrix of_contact; ///< a unit force at each of CertificateModel::dofs
   Matrix of_loads;   ///< rank x terms of F
-  Matrix of_contact; ///< rank x dofs: a unit force at each of CertificateModel::dofs
 };
 
 /// What bounds of errors are made of (model/certificate.hpp); without references there are none,
