@@ -95,7 +95,7 @@ def energy_is_bounded(tool, bent, folder):
     called(tool, "offline", "-case", smooth, *bent[2:], *BENT, "-train", "random:8:1", "-valid", "random:2:2",
            "-response_tolerance", "0", "-certify", "-out", folder)
     said = called(tool, "verify", "-out", folder)
-    width = re.search(r"Intervals of energy: at most (\S+) of it wide", said)
+    width = re.search(r"Intervals of energy: at most (\S+) of the largest", said)
     if not width or not float(width.group(1)) <= 1e-10:
         sys.exit(f"{folder.name}: intervals of the energy\n{said}")
 

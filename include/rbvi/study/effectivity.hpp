@@ -13,10 +13,11 @@ namespace rbvi {
 struct Effectivities {
   std::vector<double> values;     ///< bound / |u - u_N|, of bounds
   std::vector<double> indicators; ///< likewise of indicators
-  int exact = 0; ///< answers whose error is that of the high-fidelity solver, 1e-8 of |u|, or less
+  /// Answers whose error is that of the high-fidelity solver, 1e-8 of the largest |u|, or less.
+  int exact = 0;
   int without = 0; ///< answers that have no bound
-  std::map<std::string, double>
-      widths; ///< of the intervals of each output, the largest over its size
+  /// Of each output that has intervals the widest, over the largest a(u, u) or normal force.
+  std::map<std::string, double> widths;
   /// Bounds below the error, and outputs outside of their interval, by more than the error of the
   /// high-fidelity solver.
   int wrong = 0;
