@@ -35,6 +35,17 @@ void mark(const std::vector<double> &values, bool largest, std::size_t first,
       keeps[first + k] = 1;
 }
 
+/// All parts of an output that no sample has a value of: its condition may hold elsewhere.
+void keep_unseen(const OutputCells &cells, std::vector<int> &keeps) {
+  for (auto part = cells.parts.begin(); part != cells.parts.end();) {
+    const auto next = std::find_if(part, cells.parts.end(),
+                                   [&](const auto &of) { return of.output != part->output; });
+    const auto first = keeps.begin() + (part - cells.parts.begin()), last = first + (next - part);
+    if (std::ranges::count(first, last, 1) == 0) std::fill(first, last, 1);
+    part = next;
+  }
+}
+
 /// Marks the parts that may have an extreme value at the displacement `u` of the whole mesh.
 void mark_at(const Scene &scene, const FullMu &mu, const OutputCells &cells, const Vector &u,
              std::vector<int> &keeps) {
@@ -68,6 +79,7 @@ OutputCells candidate_cells(MPI_Comm comm, const Scene &scene, const OutputCells
     });
   }
   MPI_Allreduce(MPI_IN_PLACE, keeps.data(), static_cast<int>(keeps.size()), MPI_INT, MPI_MAX, comm);
+  keep_unseen(cells, keeps);
   return some_of(cells, scene, {keeps.begin(), keeps.end()}).cells;
 }
 

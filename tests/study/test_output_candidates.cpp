@@ -35,20 +35,35 @@ TEST(OutputCandidates, AreFewAndHoldTheExtremes) {
 
 /// What a mean needs stays, and so does all where nothing is extreme.
 TEST(OutputCandidates, LeaveOtherOutputsTheirCells) {
-  const Problem both(
-      PETSC_COMM_WORLD,
-      pressed(hold, extremes + "  mean: {mean: von_mises, in: all}\n", "plane_strain"), {}),
-      mean(PETSC_COMM_WORLD, pressed(hold, "  mean: {mean: von_mises, in: all}\n", "plane_strain"),
-           {});
+  Problem both(PETSC_COMM_WORLD,
+               pressed(hold, extremes + "  mean: {mean: von_mises, in: all}\n", "plane_strain"),
+               {});
+  const Problem mean(PETSC_COMM_WORLD,
+                     pressed(hold, "  mean: {mean: von_mises, in: all}\n", "plane_strain"), {});
   const auto count = [](const OutputCells &cells, int output) {
     return std::ranges::count(cells.parts, output, &OutputCells::Part::output);
   };
-  const OutputCells none = candidate_cells(PETSC_COMM_WORLD, both.scene(), both.output_cells(), {});
+  const auto few =
+      testing_reduced::solve_all(both, parse_set(both.scene().parameters, "random:1:3"));
+  const OutputCells kept =
+      candidate_cells(PETSC_COMM_WORLD, both.scene(), both.output_cells(), few);
   const int last = static_cast<int>(both.scene().outputs.size()) - 1;
-  EXPECT_EQ(count(none, last), count(both.output_cells(), last));
-  EXPECT_EQ(std::ssize(none.parts), count(none, last)) << "without a sample no cell is extreme";
+  EXPECT_EQ(count(kept, last), count(both.output_cells(), last));
+  EXPECT_LT(kept.parts.size(), both.output_cells().parts.size());
   EXPECT_EQ(candidate_cells(PETSC_COMM_WORLD, mean.scene(), mean.output_cells(), {}).parts.size(),
             mean.output_cells().parts.size());
+}
+
+/// Its condition holds at no sample, and may elsewhere.
+TEST(OutputCandidates, KeepAllWhereNoSampleHasAValue) {
+  Problem problem(
+      PETSC_COMM_WORLD,
+      pressed(hold, "  worst: {max: von_mises, in: all, where: uy > 10}\n", "plane_strain"), {});
+  const auto samples =
+      testing_reduced::solve_all(problem, parse_set(problem.scene().parameters, "random:2:3"));
+  EXPECT_EQ(candidate_cells(PETSC_COMM_WORLD, problem.scene(), problem.output_cells(), samples)
+                .parts.size(),
+            problem.output_cells().parts.size());
 }
 
 } // namespace rbvi::output_candidates_test
