@@ -158,6 +158,11 @@ void assemble(const Contact &contact, const FullMu &mu, const ContactState &stat
     operators.g += added_by_history(contact, state.slip, operators.weights);
 }
 
+void assemble_gaps(const Contact &contact, const FullMu &mu, ContactOperators &operators) {
+  if (contact.interfaces.size() > 1) return assemble(contact, mu, {}, operators);
+  contact.interfaces.front()->assemble_gaps(mu, operators);
+}
+
 void stack(const Contact &contact, const std::vector<ContactOperators> &all,
            ContactOperators &operators) {
   operators.b = stacked(each(all, &ContactOperators::b), false);

@@ -200,7 +200,7 @@ std::vector<bool> EntitySum::entities_at(const WantedNodes &wanted) const {
 
 void EntitySum::set_pattern(const WantedNodes &wanted) {
   pattern_wanted_ = wanted;
-  entities_ = entities_at(wanted);
+  const std::vector<bool> entities = entities_at(wanted);
   const Index tangents = dual_.components - 1;
   const auto wanted_row = [&](Index row) {
     return row >= 0 &&
@@ -209,7 +209,7 @@ void EntitySum::set_pattern(const WantedNodes &wanted) {
   std::vector<Eigen::Triplet<double>> entries;
   const auto visit = [&](auto &&add) {
     for (Index e = 0; e < mesh_.count(); ++e) {
-      if (!entities_.empty() && !entities_[e]) continue;
+      if (!entities.empty() && !entities[e]) continue;
       const std::vector<Index> columns = columns_of(e);
       for (const Index row : rows_of(e))
         for (const Index column : columns)
@@ -278,17 +278,22 @@ void EntitySum::check_sizes(const FullMu &mu, const std::vector<Point> &mapped) 
                     describe(scene_.parameters, mu));
 }
 
-void EntitySum::assemble(const FullMu &mu, const ContactState &state, const WantedNodes &wanted,
-                         ContactOperators &operators) {
-  if (pattern_.rows() == 0 || wanted != pattern_wanted_) set_pattern(wanted);
-  clear(pattern_, operators.b);
+void EntitySum::sum(const FullMu &mu, const ContactState &state, const WantedNodes &wanted,
+                    bool with_b, ContactOperators &operators) {
+  EntityValues values = shape();
+  if (with_b) {
+    if (pattern_.rows() == 0 || wanted != pattern_wanted_) set_pattern(wanted);
+    clear(pattern_, operators.b);
+  } else {
+    values.b.resize(rows(), 0);
+  }
   operators.g = Vector::Zero(dual_.size());
   operators.weights = Vector::Zero(dual_.nodes());
-  EntityValues values = shape();
   const int *position = position_.data();
-  const std::vector<Point> mapped = mapped_vertices(mu, entities_);
+  const std::vector<bool> entities = entities_at(wanted);
+  const std::vector<Point> mapped = mapped_vertices(mu, entities);
   std::vector<double> displacement;
-  visit_entities(mu, mapped, entities_, [&](Index e, Cell &cell) {
+  visit_entities(mu, mapped, entities, [&](Index e, Cell &cell) {
     if (follows_state()) set_displacement(mu, e, state, cell, displacement);
     integrate_beside_imposed(mu, cell, values);
     for (Index k = 0; k < values.b.size(); ++k, ++position)

@@ -180,8 +180,9 @@ SurfaceSupport::Frames SurfaceSupport::frames_at(const FullMu &mu, const Cell &f
 }
 
 void SurfaceSupport::integrate(const FullMu &mu, const Cell &facet, EntityValues &values) const {
-  const bool friction = values.b.rows() > static_cast<Index>(corners);
-  const Frames frames = frames_at(mu, facet);
+  const bool friction = values.b.rows() > static_cast<Index>(corners) &&
+                        (values.b.cols() > 0 || scene_.motion);
+  const Frames frames = friction ? frames_at(mu, facet) : Frames{};
   values.b.setZero();
   values.g.setZero();
   for (const SurfacePlace &at : places_) {

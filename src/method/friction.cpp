@@ -86,8 +86,6 @@ public:
 
 private:
   static constexpr int usual_patience = 10; ///< pivoting::Policy
-  /// known: not to be followed any further.
-  enum class Outcome { converged, known, cycles, indefinite, limit };
 
   /// Along growing coefficients, or thresholds in contact that come down to what they are, from the
   /// last point that is reached.
@@ -138,12 +136,24 @@ private:
     return newton_from(laws, std::move(verdict.next), point, patience);
   }
 
+  /// Whether steps by old factors that lower the residual like the last one end before those by new
+  /// factors, which take the time of some four of them.
+  bool ends_soon(double residual, double before) const {
+    constexpr double worth = 5;
+    return residual < before && std::pow(residual / before, worth) * residual <= options_.tolerance;
+  }
+
   /// Newton from these sets until the laws hold or the policy gives up. In three dimensions the
-  /// directions of slip vary continuously: there the sets alone do not tell that a step returns.
+  /// directions of slip vary continuously: there the sets alone do not tell that a step returns,
+  /// and a step by new factors is followed by such by the same ones while fewer nodes change with
+  /// each, or none and the residual falls fast.
   Outcome newton_from(const NodeLaws &laws, ActiveSets sets, State &point,
                       int patience = usual_patience) {
     pivoting::Policy<std::string, double> policy(patience);
     const bool own = &laws == &laws_;
+    std::optional<ActiveSets> from; // of the point, where factors of a step before may serve
+    Index changes = 0;              // of the step before
+    double residual = 0;            // likewise
     for (;;) {
       std::string key;
       if (laws.tangents == 1) {
@@ -152,14 +162,16 @@ private:
         if (own) visited_.insert(key);
         if (policy.returns(key)) return Outcome::cycles;
       }
-      if (systems_left_ <= 0) return Outcome::limit;
-      --systems_left_;
       h_.require(sets.support(laws));
-      const System &system = system_of(laws, sets, std::move(key));
+      Solved solved = from ? other_->step_nearby(h_, q_, laws, *from, sets, point) : Solved::far;
+      const bool anew = solved == Solved::far;
+      if (anew && systems_left_ <= 0) return Outcome::limit;
+      if (anew) --systems_left_;
+      const System &system = anew ? system_of(laws, sets, std::move(key)) : *other_;
       const auto solve = [&](int refinements) {
         return system.step(h_, q_, laws, refinements, point);
       };
-      const Solved solved = solve(laws.tangents == 1 ? 0 : 1);
+      if (anew) solved = solve(0);
       if (solved == Solved::indefinite) return Outcome::indefinite;
       if (solved == Solved::singular) return Outcome::cycles;
       Verdict verdict = judge(h_.diagonal(), laws, point, sets, options_.tolerance);
@@ -168,8 +180,16 @@ private:
         verdict = judge(h_.diagonal(), laws, point, sets, options_.tolerance);
       }
       keep(laws, point, sets, verdict);
-      if (settled(verdict, policy.least())) return Outcome::converged;
-      if (policy.is_lost(verdict.residual)) return Outcome::cycles;
+      if (anew ? settled(verdict, policy.least(), round_off)
+               : settled(verdict, residual, 0.1 * round_off))
+        return Outcome::converged;
+      if (anew && policy.is_lost(verdict.residual)) return Outcome::cycles;
+      const Index differ = laws.tangents == 2 ? verdict.next.differences(sets) : 0;
+      const bool helps = differ < changes || (differ == 0 && ends_soon(verdict.residual, residual));
+      from.reset();
+      if (laws.tangents == 2 && (anew || helps)) from = std::move(sets);
+      changes = differ;
+      residual = verdict.residual;
       sets = std::move(verdict.next);
     }
   }
@@ -184,13 +204,13 @@ private:
     return *kept_.system;
   }
 
-  /// The sets are right and the violations below tolerance; or as small as round-off lets them be:
-  /// in two dimensions what a repeated step would give again, in three what it did not improve.
-  bool settled(const Verdict &verdict, double least) const {
+  /// The sets are right and the violations below tolerance; or as small as round-off lets them be,
+  /// `allowed`: in two dimensions what a repeated step would give again, in three what it did not
+  /// improve.
+  bool settled(const Verdict &verdict, double least, double allowed) const {
     if (verdict.changed) return false;
     if (verdict.residual <= options_.tolerance) return true;
-    return verdict.residual <= round_off &&
-           (laws_.tangents == 1 || verdict.residual >= 0.5 * least);
+    return verdict.residual <= allowed && (laws_.tangents == 1 || verdict.residual >= 0.5 * least);
   }
 
   /// The fixed point of the bounds, frozen in turn, with shorter steps where it turns back; and
@@ -279,29 +299,9 @@ private:
     result.x = std::move(best_.x);
     result.w = std::move(best_.w);
     describe(result, laws_, best_sets_);
-    result.reason = reason(outcome, result);
+    result.reason = reason_of(outcome, options_.max_iterations, result.backup_steps, undecided_);
     kept_.sets = std::move(best_sets_);
     return result;
-  }
-
-  std::string reason(Outcome outcome, const FrictionResult &result) const {
-    if (outcome == Outcome::converged) return "every condition of contact holds";
-    if (outcome == Outcome::indefinite)
-      return "the block of H of the nodes in contact is not positive definite: dependent "
-             "constraints or an inexact H";
-    if (undecided_ > 0)
-      return "a threshold that acts in contact alone jumps where a node leaves contact: without it "
-             "more nodes touch than with it (" +
-             std::to_string(undecided_) +
-             " here), and neither is an answer; let it act everywhere (bound: everywhere), "
-             "or ask nearby";
-    const std::string after = " after " + std::to_string(options_.max_iterations) + " steps: ";
-    const std::string remedy = "start closer to the solution (a smaller change of the load or of "
-                               "the coefficient of friction)";
-    if (result.backup_steps == 0)
-      return "the laws of friction are still violated" + after + "raise the limit, or " + remedy;
-    return "neither Newton's method nor the fixed point of the friction bounds has settled" +
-           after + remedy + ", lower the coefficient, or raise the limit";
   }
 
   LazyColumns &h_;

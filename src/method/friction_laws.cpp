@@ -67,6 +67,26 @@ void describe(FrictionResult &result, const NodeLaws &laws, const ActiveSets &se
   }
 }
 
+std::string reason_of(Outcome outcome, int max_iterations, int backup_steps, long undecided) {
+  if (outcome == Outcome::converged) return "every condition of contact holds";
+  if (outcome == Outcome::indefinite)
+    return "the block of H of the nodes in contact is not positive definite: dependent "
+           "constraints or an inexact H";
+  if (undecided > 0)
+    return "a threshold that acts in contact alone jumps where a node leaves contact: without it "
+           "more nodes touch than with it (" +
+           std::to_string(undecided) +
+           " here), and neither is an answer; let it act everywhere (bound: everywhere), or ask "
+           "nearby";
+  const std::string after = " after " + std::to_string(max_iterations) + " steps: ";
+  const std::string remedy = "start closer to the solution (a smaller change of the load or of "
+                             "the coefficient of friction)";
+  if (backup_steps == 0)
+    return "the laws of friction are still violated" + after + "raise the limit, or " + remedy;
+  return "neither Newton's method nor the fixed point of the friction bounds has settled" + after +
+         remedy + ", lower the coefficient, or raise the limit";
+}
+
 Vector smooth_start(const Vector &diagonal, const NodeLaws &laws, const State &point) {
   Vector result = diagonal;
   for (Index i = 0; laws.tangents == 2 && i < laws.nodes(); ++i)

@@ -22,6 +22,12 @@ NodeLaws frozen(NodeLaws laws, const Vector &bounds);
 /// Fills in the list of nodes in contact and the states of all nodes.
 void describe(FrictionResult &result, const NodeLaws &laws, const ActiveSets &sets);
 
+/// How a solver ended; known: not to be followed any further.
+enum class Outcome { converged, known, cycles, indefinite, limit };
+/// FrictionResult::reason. `undecided`: nodes that lift off with their thresholds and touch
+/// without.
+std::string reason_of(Outcome outcome, int max_iterations, int backup_steps, long undecided);
+
 /// FrictionResult::start. `diagonal`: H_jj, 0: unknown.
 Vector smooth_start(const Vector &diagonal, const NodeLaws &laws, const State &point);
 

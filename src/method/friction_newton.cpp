@@ -39,6 +39,14 @@ std::vector<Index> ActiveSets::support(const NodeLaws &laws) const {
   return result;
 }
 
+Index ActiveSets::differences(const ActiveSets &other) const {
+  Index count = 0;
+  for (std::size_t i = 0; i < active.size(); ++i)
+    count += active[i] != other.active[i] || tangent[i] != other.tangent[i] ||
+             piece[i] != other.piece[i];
+  return count;
+}
+
 std::string ActiveSets::key() const {
   std::string result;
   result.reserve(active.size());
@@ -151,6 +159,23 @@ Vector expand(const NodeLaws &laws, const ActiveSets &sets, const std::vector<Un
   return x;
 }
 
+double unit_of(const Unknown &unknown, const Vector &diagonal, const NodeLaws &laws) {
+  return 1 / std::sqrt(unknown.first == laws.normal[unknown.node]
+                           ? diagonal[unknown.first]
+                           : tangential_diagonal(diagonal, laws, unknown.node));
+}
+
+Vector moved_by(const LazyColumns &h, const NodeLaws &laws, const ActiveSets &sets,
+                const Unknown &unknown) {
+  Vector moved = unknown.a * h.column(unknown.first);
+  if (unknown.b != 0) moved += unknown.b * h.column(unknown.second);
+  if (unknown.slope > 0)
+    for (int j = 0; j < laws.free_at(unknown.node); ++j)
+      moved += unknown.slope * sets.direction(j, unknown.node) *
+               h.column(laws.tangent[unknown.node] + j);
+  return moved;
+}
+
 System::System(const LazyColumns &h, const NodeLaws &laws, ActiveSets sets)
     : sets_(std::move(sets)) {
   for (const Index j : sets_.support(laws))
@@ -161,13 +186,8 @@ System::System(const LazyColumns &h, const NodeLaws &laws, ActiveSets sets)
   list_ = unknowns(laws, sets_);
   symmetric_ = std::ranges::all_of(list_, [](const Unknown &u) { return u.slope == 0; });
   if (list_.empty()) return;
-  const Vector &diagonal = h.diagonal();
-  unit_ = Vector::NullaryExpr(std::ssize(list_), [&](Index k) {
-    const Unknown &u = list_[k];
-    return 1 / std::sqrt(u.first == laws.normal[u.node]
-                             ? diagonal[u.first]
-                             : tangential_diagonal(diagonal, laws, u.node));
-  });
+  unit_ = Vector::NullaryExpr(std::ssize(list_),
+                              [&](Index k) { return unit_of(list_[k], h.diagonal(), laws); });
   assemble(h, laws);
   if (!symmetric_ && laws.tangents == 2 && std::ssize(list_) >= many) {
     rough_.emplace(matrix_.cast<float>());
@@ -185,51 +205,36 @@ System::System(const LazyColumns &h, const NodeLaws &laws, ActiveSets sets)
 void System::assemble(const LazyColumns &h, const NodeLaws &laws) {
   const Index count = std::ssize(list_);
   matrix_.resize(count, count);
-  std::vector<Index> rows, turns; // turns: rows of two entries
-  Vector factors(count);          // of the first
-  rows.reserve(count);
   for (Index k = 0; k < count; ++k) {
-    rows.push_back(list_[k].first);
-    factors[k] = list_[k].a;
-    if (list_[k].b != 0) turns.push_back(k);
-  }
-  for (Index k = 0; k < count; ++k) {
-    const Unknown &u = list_[k];
-    auto of_rows = matrix_.col(k);
-    of_rows.setZero();
-    const auto add = [&](double factor, Index of) {
-      const auto column = h.column(of);
-      for (Index r = 0; r < count; ++r) // twice as fast as an expression with indices
-        of_rows[r] += factor * factors[r] * column[rows[r]];
-      for (const Index r : turns)
-        of_rows[r] += factor * list_[r].b * column[list_[r].second];
-    };
-    add(u.a, u.first);
-    if (u.b != 0) add(u.b, u.second);
-    if (u.slope > 0)
-      for (int j = 0; j < laws.free_at(u.node); ++j)
-        add(u.slope * sets_.direction(j, u.node), laws.tangent[u.node] + j);
-    of_rows[k] += u.curvature;
-    of_rows.array() *= unit_[k] * unit_.array();
+    const Vector moved = moved_by(h, laws, sets_, list_[k]);
+    for (Index r = 0; r < count; ++r)
+      matrix_(r, k) = unit_[k] * unit_[r] * along(list_[r], moved);
+    matrix_(k, k) += list_[k].curvature * unit_[k] * unit_[k];
   }
 }
 
 Vector System::right_side(const Vector &y) const {
-  return Vector::NullaryExpr(unit_.size(), [&](Index k) {
-    const Unknown &u = list_[k];
-    return -unit_[k] * (u.a * y[u.first] + u.b * y[u.second]);
-  });
+  return Vector::NullaryExpr(unit_.size(), [&](Index k) { return -unit_[k] * along(list_[k], y); });
 }
 
-Vector System::refined(const Vector &right) const {
-  constexpr double round_off = 1e-15, enough = 1e-13, shrinks = 0.1;
+Matrix System::times_inverse(const Matrix &right) const {
+  if (rough_) return rough_->solve(right.cast<float>()).cast<double>();
+  if (!symmetric_) return lu_.solve(right);
+  Matrix x = right;
+  solve_lower(lower_, x);
+  solve_lower_transposed(lower_, x);
+  return x;
+}
+
+Vector System::refined(const Vector &right, double accuracy) const {
+  constexpr double shrinks = 0.1;
   Vector u = Vector::Zero(right.size()), left = right;
   for (double before = std::numeric_limits<double>::infinity(), scale = 0;
        (scale = left.norm()) > 0;) {
-    const Vector change = scale * rough_->solve((left / scale).cast<float>()).cast<double>();
+    const Vector change = scale * times_inverse(left / scale);
     u += change;
     const double size = change.norm() / u.norm();
-    if (size <= round_off || (size <= enough && size > shrinks * before)) return u;
+    if (size <= accuracy) return u;
     if (!(size <= shrinks * before)) return Eigen::PartialPivLU<Matrix>(matrix_).solve(right);
     before = size;
     left = right - matrix_ * u;
@@ -239,13 +244,10 @@ Vector System::refined(const Vector &right) const {
 
 Vector System::solve(const Vector &right, int refinements) const {
   if (right.size() == 0) return right;
-  if (rough_) return refined(right).cwiseProduct(unit_);
-  const auto once = [&](const Vector &r) -> Vector {
-    return symmetric_ ? cholesky_solve(lower_, r) : Vector(lu_.solve(r));
-  };
-  Vector u = once(right);
+  if (rough_) return refined(right, refinements > 0 ? 1e-13 : 1e-3).cwiseProduct(unit_);
+  Vector u = times_inverse(right);
   for (int k = 0; k < refinements; ++k)
-    u -= once(matrix_ * u - right);
+    u -= times_inverse(matrix_ * u - right);
   return u.cwiseProduct(unit_);
 }
 

@@ -36,6 +36,8 @@ struct ActiveSets {
   }
   /// The entries of x that need not be zero.
   std::vector<Index> support(const NodeLaws &laws) const;
+  /// The nodes in another state than in other sets, but for the direction of slip.
+  Index differences(const ActiveSets &other) const;
   /// A text that is equal for sets with the same linear system, in two dimensions.
   std::string key() const;
 };
@@ -83,6 +85,15 @@ struct Unknown {
   double curvature = 0; ///< on the diagonal
 };
 std::vector<Unknown> unknowns(const NodeLaws &laws, const ActiveSets &sets);
+/// What scales the diagonal of H to one in its row.
+double unit_of(const Unknown &unknown, const Vector &diagonal, const NodeLaws &laws);
+/// What a unit of the unknown adds to w, but for its curvature.
+Vector moved_by(const LazyColumns &h, const NodeLaws &laws, const ActiveSets &sets,
+                const Unknown &unknown);
+/// The row of an unknown times a vector of all rows.
+inline double along(const Unknown &row, const Vector &vector) {
+  return row.a * vector[row.first] + row.b * vector[row.second];
+}
 /// The part of x that no unknown changes: what bounds of slipping nodes have at x_n = 0.
 Vector fixed_part(const NodeLaws &laws, const ActiveSets &sets);
 /// x of the unknowns u, beside its fixed part `x`; slipping nodes on their circle.
@@ -90,7 +101,7 @@ Vector expand(const NodeLaws &laws, const ActiveSets &sets, const std::vector<Un
               const Vector &u, Vector x);
 
 /// With friction a singular matrix need not be a fault of H.
-enum class Solved { yes, singular, indefinite };
+enum class Solved { yes, singular, indefinite, far };
 
 /// The linear system of active sets, factorised.
 class System {
@@ -100,6 +111,11 @@ public:
   /// The point that solves it; `point` is unchanged where none does.
   Solved step(const LazyColumns &h, const Vector &q, const NodeLaws &laws, int refinements,
               State &point) const;
+  /// The same for other sets, in space: a step from `point`, which those of `from` gave, by the
+  /// factors of these sets, bordered by what is unknown in one of both alone. Slips have turned
+  /// since, so that it is no step of Newton's method. Solved::far where much is.
+  Solved step_nearby(const LazyColumns &h, const Vector &q, const NodeLaws &laws,
+                     const ActiveSets &from, ActiveSets to, State &point) const;
   /// Changes of x in the plane by those of q (columns), while the sets stay.
   Matrix change(const NodeLaws &laws, const Matrix &of_q) const;
   /// As FrictionSolver::near, of the point x that the sets gave by `laws`.
@@ -108,11 +124,13 @@ public:
 
 private:
   void assemble(const LazyColumns &h, const NodeLaws &laws);
+  /// The unknowns for right sides in their units, any number, as the factors have them.
+  Matrix times_inverse(const Matrix &right) const;
   /// -(a y[first] + b y[second]) of each row, in its unit.
   Vector right_side(const Vector &y) const;
-  /// By the factors in single precision, which cost half, refined to round-off.
-  Vector refined(const Vector &right) const;
-  /// The unknowns for a right side.
+  /// By the factors in single precision, which cost half, refined until they change by `accuracy`.
+  Vector refined(const Vector &right, double accuracy) const;
+  /// The unknowns for a right side; without refinement as exact as a step of Newton's method needs.
   Vector solve(const Vector &right, int refinements) const;
 
   ActiveSets sets_;

@@ -117,11 +117,15 @@ NodalTrace::NodalTrace(const ReducedModel &model, const Contact &contact)
     unknown_[dof] = false;
 }
 
-Vector NodalTrace::gap_left(const ContactOperators &operators, const Vector &u) const {
-  if (dofs_.empty()) return operators.nodal_gap - operators.nodal_b * (model_.contact.trace * u);
+Vector NodalTrace::displacement(const Vector &u) const {
+  if (dofs_.empty()) return model_.contact.trace * u;
   Vector at_contact = Vector::Zero(model_.contact_dofs());
   at_contact(dofs_) = trace_ * u;
-  Vector gap = operators.nodal_gap - operators.nodal_b * at_contact;
+  return at_contact;
+}
+
+Vector NodalTrace::gap_left(const ContactOperators &operators, const Vector &displacement) const {
+  Vector gap = operators.nodal_gap - operators.nodal_b * displacement;
   for (Index node = 0; node < gap.size() && !unknown_.empty(); ++node)
     for (SparseMatrix::InnerIterator entry(operators.nodal_b, node); entry; ++entry)
       if (unknown_[entry.col()]) gap[node] = std::numeric_limits<double>::infinity();
@@ -236,7 +240,7 @@ ContactOperators OnlineSolver::nodal_operators(const ReducedAnswer &solution,
 
 Vector OnlineSolver::contact_gap(const ReducedAnswer &solution) const {
   const ContactOperators operators = nodal_operators(solution, multiplier(solution));
-  return trace_->gap_left(operators, solution.u);
+  return trace_->gap_left(operators, trace_->displacement(solution.u));
 }
 
 Vector OnlineSolver::field(const ReducedAnswer &solution) const {
@@ -270,7 +274,7 @@ Grid OnlineSolver::contact_grid(const ReducedAnswer &solution, std::size_t inter
 }
 
 void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vector &lambda,
-                                        Outputs &outputs) const {
+                                        const Vector &at_vertices, Outputs &outputs) const {
   const bool faces_surfaces = !scene_.small && !model_.evaluates_contact() &&
                               model_.contact.trace_dofs.empty() && scene_.components == scene_.dim;
   if (scene_.outputs.empty() && !faces_surfaces) return;
@@ -283,7 +287,10 @@ void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vec
                     {contact_shares_, of_interface, cell_outputs_.at(solution.mu, solution.u),
                      solution.least_pressure * std::max(0.0, lambda.maxCoeff()), only_},
                     lambda, outputs);
-  if (faces_surfaces) add_gap_error(scene_, contact_, solution.mu, of_interface, lambda, outputs);
+  if (faces_surfaces)
+    add_gap_error(
+        scene_, contact_, solution.mu,
+        [&](std::size_t i) { return at_interface(solution.mu, at_vertices, i); }, lambda, outputs);
 }
 
 void OnlineSolver::add_bound(const ReducedAnswer &solution, const Vector &lambda,
@@ -336,14 +343,15 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedAnswer &solution) const
   }
   if (nitsche_) {
     nitsche_->outputs(solution.mu, solution.u, result);
-    add_outputs_of_scene(solution, multiplier(solution), result);
+    add_outputs_of_scene(solution, multiplier(solution), model_.contact.trace * solution.u,
+                         result);
     check_finite(result);
     return result;
   }
-  const Vector lambda = multiplier(solution);
-  add_outputs_of_scene(solution, lambda, result);
+  const Vector lambda = multiplier(solution), at_vertices = trace_->displacement(solution.u);
+  add_outputs_of_scene(solution, lambda, at_vertices, result);
   const ContactOperators operators = nodal_operators(solution, lambda);
-  const Vector gap = trace_->gap_left(operators, solution.u);
+  const Vector gap = trace_->gap_left(operators, at_vertices);
   trace_->check_outside(operators, gap);
   set_penetration(penetration_at(gap, operators.nodal_gap), result);
   const double least = solution.least_pressure * std::max(0.0, lambda.maxCoeff());

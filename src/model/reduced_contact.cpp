@@ -101,7 +101,7 @@ private:
   }
   void set_gap(const FullMu &mu, ReducedAnswer &answer) {
     if (model_.evaluates_gap()) {
-      assemble(contact_, mu, {}, answer.contact);
+      assemble_gaps(contact_, mu, answer.contact);
       g_ = rows_ * answer.contact.g;
     } else {
       g_ = model_.contact.g.reduced *

@@ -29,6 +29,8 @@ Contact make_contact(const Scene &scene, std::vector<InterfaceMesh> meshes);
 /// The operators of all interfaces together.
 void assemble(const Contact &contact, const FullMu &mu, const ContactState &state,
               ContactOperators &operators);
+/// The same at rest, but perhaps for B, for less work.
+void assemble_gaps(const Contact &contact, const FullMu &mu, ContactOperators &operators);
 /// The same from those of each interface.
 void stack(const Contact &contact, const std::vector<ContactOperators> &all,
            ContactOperators &operators);

@@ -20,7 +20,7 @@ struct EntityValues {
 
 class EntitySum : public ContactInterface {
 public:
-  /// Sets b and g of `values`, which has its shape. `entity`: its vertices, reference and mapped,
+  /// Sets b and g of `values`, which has its shape, or no columns of b. `entity`: its vertices, reference and mapped,
   /// and the state, where there is one.
   virtual void integrate(const FullMu &mu, const Cell &entity, EntityValues &values) const = 0;
   /// The same, less b times the values imposed on the entity in g.
@@ -29,7 +29,12 @@ public:
   virtual void weigh(const FullMu &mu, const Cell &entity, EntityValues &values) const = 0;
 
   void assemble(const FullMu &mu, const ContactState &state, const WantedNodes &wanted,
-                ContactOperators &operators) override;
+                ContactOperators &operators) override {
+    sum(mu, state, wanted, true, operators);
+  }
+  void assemble_gaps(const FullMu &mu, ContactOperators &operators) override {
+    sum(mu, {}, {}, !imposed_by_.empty(), operators);
+  }
   void assemble_nodal(const FullMu &mu, const ContactState &state, const Vector &lambda,
                       ContactOperators &operators) override;
   bool can_be_split() const override { return true; }
@@ -67,6 +72,8 @@ protected:
   const std::vector<Index> &dual_of_vertex() const { return dual_of_vertex_; }
 
 private:
+  void sum(const FullMu &mu, const ContactState &state, const WantedNodes &wanted, bool with_b,
+           ContactOperators &operators);
   bool can_move(int node) const;
   std::vector<Index> dual_functions(Index vertices, bool lumped) const;
   void set_rows();
@@ -93,7 +100,6 @@ private:
   std::vector<int> imposed_by_; ///< of the dofs of each entity; empty: nothing is imposed
   SparseMatrix pattern_;        ///< of b, zero values; made by the first assemble
   WantedNodes pattern_wanted_;  ///< the rows that it has
-  std::vector<bool> entities_;  ///< entities_at(pattern_wanted_)
   std::vector<int> position_;   ///< per value of their kernels: where in b it is added, -1 nowhere
 };
 

@@ -149,6 +149,10 @@ public:
   void assemble_all(const FullMu &mu, const ContactState &state, ContactOperators &operators) {
     assemble(mu, state, {}, operators);
   }
+  /// At rest, all of them but perhaps B, for less work.
+  virtual void assemble_gaps(const FullMu &mu, ContactOperators &operators) {
+    assemble_all(mu, {}, operators);
+  }
   /// Whether assemble() does leave them zero, for less work. The nodal constraint is then one of
   /// the dual nodes.
   virtual bool can_be_split() const { return false; }

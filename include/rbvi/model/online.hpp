@@ -28,8 +28,11 @@ class NodalTrace {
 public:
   /// `model` must outlive it.
   NodalTrace(const ReducedModel &model, const Contact &contact);
-  /// nodal_gap - nodal_b u; infinite at nodes where the model has no displacement.
-  Vector gap_left(const ContactOperators &operators, const Vector &u) const;
+  /// The displacement of coefficients u at the contact dofs that single nodes are constrained at;
+  /// zero at the others.
+  Vector displacement(const Vector &u) const;
+  /// nodal_gap - nodal_b times that; infinite at nodes where the model has no displacement.
+  Vector gap_left(const ContactOperators &operators, const Vector &displacement) const;
   /// Throws failure where `gap`, of gap_left, says that bodies meet at a node without multipliers,
   /// in a model whose multipliers are those near contact.
   void check_outside(const ContactOperators &operators, const Vector &gap) const;
@@ -89,8 +92,9 @@ private:
   /// weights, nodal_b and nodal_gap.
   ContactOperators nodal_operators(const ReducedAnswer &solution, const Vector &lambda) const;
 
+  /// `at_vertices`: the displacement at the contact dofs, those of vertices at least.
   void add_outputs_of_scene(const ReducedAnswer &solution, const Vector &lambda,
-                            Outputs &outputs) const;
+                            const Vector &at_vertices, Outputs &outputs) const;
   void add_bound(const ReducedAnswer &solution, const Vector &lambda, Outputs &outputs) const;
   ReducedAnswer with_imposed_energy(ReducedAnswer answer) const;
   double imposed_energy_at(const FullMu &mu) const;
