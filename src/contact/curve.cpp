@@ -1,6 +1,7 @@
 #include "rbvi/contact/curve.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 
 #include <algorithm>
 #include <cmath>

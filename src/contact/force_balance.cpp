@@ -89,8 +89,9 @@ std::vector<TwoRoads> two_roads(const Scene &scene, ContactInterface &interface,
   if (membrane) {
     ContactOperators nodal;
     interface.assemble_nodal(mu, state, lambda, nodal);
+    const double onto = interface.constraint_at(mu, mesh.points.front()).direction[0];
     for (Index i = 0; i < nodal.weights.size(); ++i)
-      points.push_back({0, {}, {nodal.weights[i] * lambda[i], 0, 0}});
+      points.push_back({0, {}, {-onto * nodal.weights[i] * lambda[i], 0, 0}});
   }
   if (points.empty()) return {};
   std::vector<TwoRoads> sides(mesh.parts.size());

@@ -18,8 +18,8 @@ class ObstacleInterface : public EntitySum {
 public:
   ObstacleInterface(const Scene &scene, InterfaceMesh interface_mesh, Obstacle obstacle)
       : EntitySum(scene, std::move(interface_mesh), scene.dim), obstacle_(std::move(obstacle)),
-        b_(hat_coupling("", -1, mesh_.degree, obstacle_.lumped)),
-        g_(function_load("", -1, obstacle_.height, obstacle_.lumped)) {
+        b_(hat_coupling("", -obstacle_.side, mesh_.degree, obstacle_.lumped)),
+        g_(function_load("", -obstacle_.side, obstacle_.height, obstacle_.lumped)) {
     if (mesh_.components != 1 || mesh_.per_entity != nodes_per_cell(mesh_.dim, mesh_.degree))
       throw bad_input("scene " + scene.name + ": an obstacle is for scalar displacements");
     for (Index e = 0; e < mesh_.count(); ++e)
@@ -45,7 +45,7 @@ public:
   }
   PointConstraint constraint_at(const FullMu &mu, const Point &, const Point &mapped,
                                 const Point &) const override {
-    return {{-1, 0, 0}, -obstacle_.height(mu, mapped)};
+    return {{-obstacle_.side, 0, 0}, -obstacle_.side * obstacle_.height(mu, mapped)};
   }
 
   void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
@@ -132,7 +132,7 @@ Grid ObstacleInterface::fields(const FullMu &mu, const Vector &u, const Vector &
   Vector gap(mesh_.nodes());
   for (Index i = 0; i < gap.size(); ++i) {
     const Point x{points(i, 0), points(i, 1), mesh_.dim == 3 ? points(i, 2) : 0};
-    gap[i] = u[i] - obstacle_.height(mu, x);
+    gap[i] = obstacle_.side * (u[i] - obstacle_.height(mu, x));
   }
   Grid grid{std::move(points),
             mesh_.entities,
@@ -140,23 +140,25 @@ Grid ObstacleInterface::fields(const FullMu &mu, const Vector &u, const Vector &
             {{"pressure", pressure.col(0), "Pa"}},
             {},
             {}};
-  add_gap(gap, std::vector<Point>(mesh_.points.size(), {0, 0, -1}), grid);
+  add_gap(gap, std::vector<Point>(mesh_.points.size(), {0, 0, -obstacle_.side}), grid);
   return grid;
 }
 
 } // namespace
 
 Term adhesive_load(const Obstacle &obstacle, const Scene &scene) {
-  const auto downwards = [adhesion = obstacle.adhesion](const FullMu &mu, const Point &) {
-    return Point{-adhesion(mu), 0, 0};
+  const auto onto = [adhesion = obstacle.adhesion, side = obstacle.side](const FullMu &mu,
+                                                                         const Point &) {
+    return Point{-side * adhesion(mu), 0, 0};
   };
-  return mapped_term(body_load(obstacle.region, downwards, 1, scene.degree));
+  return mapped_term(body_load(obstacle.region, onto, 1, scene.degree));
 }
 
 ContactRecipe obstacle(Obstacle obstacle) {
   ContactRecipe recipe;
   recipe.entities = {InterfaceEntities::Kind::cells, {obstacle.region}};
   recipe.nodal = obstacle.lumped;
+  recipe.push = obstacle.side;
   add_friction({.adhesion = obstacle.adhesion}, recipe);
   recipe.make = [obstacle](const Scene &scene, InterfaceMesh mesh) {
     return std::make_unique<ObstacleInterface>(scene, std::move(mesh), obstacle);

@@ -24,7 +24,8 @@ const std::vector<std::string> &output_fields() {
                                               "sigma_zz",   "sigma_xy",
                                               "sigma_yz",   "sigma_xz",
                                               "von_mises",  "strain_energy",
-                                              "contact",    "stick"};
+                                              "contact",    "stick",
+                                              "slope_x",    "slope_y"};
   return names;
 }
 

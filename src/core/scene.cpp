@@ -193,6 +193,7 @@ void reflect(const MirrorPlanes &planes, int image, OutputFields &fields) {
          {field::sigma_yz, field::sigma_xz}}};
     for (const std::size_t turned : {field::ux + c, field::nx + c, shears[c][0], shears[c][1]})
       fields[turned] = -fields[turned];
+    if (c < 2) fields[field::slope_x + c] = -fields[field::slope_x + c];
     if (std::isnan(fields[field::z])) // in space they are sizes
       for (const std::size_t turned : {field::tangential, field::slip})
         fields[turned] = -fields[turned];

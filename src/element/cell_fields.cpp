@@ -40,6 +40,19 @@ Tensor stress(const Lame &material, const Tensor &gradient) {
   return material.lambda * strain.trace() * Tensor::Identity() + 2 * material.shear * strain;
 }
 
+/// Of the displacement, a row a component.
+Tensor gradient_at(const Scene &scene, const DisplacedCell &cell,
+                   const std::array<double, 4> &barycentric) {
+  std::array<std::array<double, 3>, most_nodes> gradients{};
+  lagrange_gradients(scene.dim, scene.degree, {barycentric.data(), vertices_of(scene.dim)},
+                     simplex(scene.dim, cell.cell.mapped), gradients);
+  Tensor gradient = Tensor::Zero();
+  for (int i = 0; i < nodes_per_cell(scene.dim, scene.degree); ++i)
+    gradient += Eigen::Map<const Eigen::Vector3d>(cell.u[i].data()) *
+                Eigen::Map<const Eigen::RowVector3d>(gradients[i].data());
+  return gradient;
+}
+
 /// The lowest node of a connected part; the path to it is shortened.
 int root_of(std::vector<int> &above, int node) {
   while (above[node] != node) {
@@ -68,16 +81,15 @@ Point displacement_at(const Scene &scene, const DisplacedCell &cell,
   return u;
 }
 
+Point slope_at(const Scene &scene, const DisplacedCell &cell,
+               const std::array<double, 4> &barycentric) {
+  const Tensor gradient = gradient_at(scene, cell, barycentric);
+  return {gradient(0, 0), gradient(0, 1), gradient(0, 2)};
+}
+
 PointStress stress_at(const Scene &scene, const FullMu &all_parameters, const DisplacedCell &cell,
                       const std::array<double, 4> &barycentric) {
-  const std::size_t vertices = vertices_of(scene.dim);
-  std::array<std::array<double, 3>, most_nodes> gradients{};
-  lagrange_gradients(scene.dim, scene.degree, {barycentric.data(), vertices},
-                     simplex(scene.dim, cell.cell.mapped), gradients);
-  Tensor gradient = Tensor::Zero();
-  for (int i = 0; i < nodes_per_cell(scene.dim, scene.degree); ++i)
-    gradient += Eigen::Map<const Eigen::Vector3d>(cell.u[i].data()) *
-                Eigen::Map<const Eigen::RowVector3d>(gradients[i].data());
+  Tensor gradient = gradient_at(scene, cell, barycentric);
   if (scene.axisymmetric) { // the hoop strain u_r / r, on the axis its limit
     const auto &corners = cell.cell.mapped;
     const double radius = point_at(corners, barycentric, 3)[0],

@@ -1,10 +1,12 @@
 #include "rbvi/element/output_cells.hpp"
 
+#include "clipped_simplex.hpp"
 #include "rbvi/element/cell_fields.hpp"
 #include "rbvi/element/facets.hpp"
 #include "rbvi/element/lagrange.hpp"
 #include "rbvi/element/output_sums.hpp"
 #include "rbvi/element/quadrature.hpp"
+#include "simplex_lines.hpp"
 
 #include <cmath>
 
@@ -13,7 +15,6 @@ namespace rbvi {
 namespace {
 
 using OutputPart = OutputCells::Part;
-using Barycentric = std::array<double, 4>;
 
 int per_cell(const Scene &scene) {
   return nodes_per_cell(scene.dim, scene.degree);
@@ -76,6 +77,9 @@ OutputFields fields_at(const Scene &scene, const FullMu &mu, const DisplacedCell
   std::copy_n(x.begin(), dim, fields.begin() + field::x);
   if (scene.components == 1) {
     fields[field::u] = u[0];
+    const Point slope = slope_at(scene, cell, at);
+    fields[field::slope_x] = slope[0];
+    fields[field::slope_y] = slope[1];
     return fields;
   }
   std::copy_n(u.begin(), dim, fields.begin() + field::ux);
@@ -105,37 +109,6 @@ Barycentric on_facet(int dim, int facet, const Barycentric &of_facet) {
   return at;
 }
 
-/// A simplex of one to three dimensions by lines: of a triangle at the shares r of the way from its
-/// first vertex to the opposite edge, of a tetrahedron those of triangles at the shares of the way
-/// to the opposite side. The shares are of Gauss, where they are summed, else from end to end.
-class SimplexLines {
-public:
-  SimplexLines(int dim, double size, const OutputLines &lines)
-      : dim_(dim), size_(size), places_(lines.places()) {}
-
-  std::size_t count() const { return dim_ == 1 ? 1 : dim_ == 2 ? 3 : 9; }
-  Barycentric at(std::size_t line, double s) const {
-    if (dim_ == 1) return {1 - s, s, 0, 0};
-    const double r = places_[line % 3].s;
-    if (dim_ == 2) return {1 - r, r * (1 - s), r * s, 0};
-    const double q = places_[line / 3].s;
-    return {1 - q, q * (1 - r), q * r * (1 - s), q * r * s};
-  }
-  /// Over the length of the line.
-  double measure(std::size_t line) const {
-    if (dim_ == 1) return size_;
-    const auto &[r, weight] = places_[line % 3];
-    if (dim_ == 2) return 2 * size_ * r * weight;
-    const auto &[q, of_layer] = places_[line / 3];
-    return 6 * size_ * q * q * of_layer * r * weight;
-  }
-
-private:
-  int dim_;
-  double size_;
-  const std::array<OutputLines::Place, 3> &places_;
-};
-
 /// The cell, or a facet of it, where its normal is known.
 void add_simplex(const OutputState &state, const OutputPart &part, OutputLines &lines) {
   const DisplacedCell cell = state.displaced(part.cell);
@@ -143,21 +116,34 @@ void add_simplex(const OutputState &state, const OutputPart &part, OutputLines &
   const bool whole = part.facet < 0;
   FacetMeasure facet{};
   if (!whole) facet = facet_measure(dim, facet_cell(cell.cell, part.facet).mapped);
-  const SimplexLines own(whole ? dim : dim - 1,
-                         whole ? volume_of(dim, cell.cell.mapped) : facet.size, lines);
-  lines.add(
-      own.count(),
-      [&](std::size_t line, double s) {
-        const Barycentric at = own.at(line, s);
-        OutputFields fields =
-            fields_at(state.scene, state.mu, cell, whole ? at : on_facet(dim, part.facet, at));
-        if (!whole) std::copy_n(facet.normal.begin(), dim, fields.begin() + field::nx);
-        return fields;
-      },
-      [&](std::size_t line, const OutputFields &fields) {
-        return own.measure(line) *
-               circumference(state.scene.axisymmetric, {fields[field::x], 0, 0});
-      });
+  const int own_dim = whole ? dim : dim - 1;
+  const double size = whole ? volume_of(dim, cell.cell.mapped) : facet.size;
+  const auto fields_of = [&](const Barycentric &at) {
+    OutputFields fields =
+        fields_at(state.scene, state.mu, cell, whole ? at : on_facet(dim, part.facet, at));
+    if (!whole) std::copy_n(facet.normal.begin(), dim, fields.begin() + field::nx);
+    return fields;
+  };
+  const auto weight_of = [&](const SimplexLines &own) {
+    return [&](std::size_t line, const OutputFields &fields) {
+      return own.measure(line) * circumference(state.scene.axisymmetric, {fields[field::x], 0, 0});
+    };
+  };
+  if (own_dim == 1 || !lines.is_conditional()) {
+    const SimplexLines own(own_dim, size, lines);
+    return lines.add(
+        own.count(), [&](std::size_t line, double s) { return fields_of(own.at(line, s)); },
+        weight_of(own));
+  }
+  for (int image = 0; image < image_count(state.scene.mirrors); ++image)
+    for (const Piece &piece : pieces_where(
+             own_dim, [&](const Barycentric &at) { return lines.holds(image, fields_of(at)); })) {
+      const SimplexLines own(own_dim, size * piece.share(), lines);
+      lines.add_whole(
+          image, own.count(),
+          [&](std::size_t line, double s) { return fields_of(piece.at(own.at(line, s))); },
+          weight_of(own));
+    }
 }
 
 void add_point(const OutputState &state, const OutputPart &part, const Point &point,

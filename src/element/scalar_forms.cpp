@@ -114,6 +114,20 @@ Form laplace(const std::string &region, int degree) {
           }};
 }
 
+Form weighted_product(const std::string &region, const std::function<PointValue> &c, int degree) {
+  check_degree(degree);
+  return {region, [c, points = of_both([&](int dim) { return load_points(dim, degree); })](
+                      const FullMu &mu, const Cell &cell, double *values) {
+            const double volume = volume_of(cell.dim, cell.mapped);
+            const Index nodes = of(points, cell).front().values.size();
+            CellMatrix sum = CellMatrix::Zero(nodes, nodes);
+            for (const LoadPoint &point : of(points, cell))
+              sum += point.at.weight * c(mu, mapped_point(cell, point.at)) *
+                     (point.values * point.values.transpose());
+            fill(values, volume, sum);
+          }};
+}
+
 Form h1_product(double length, int components, int degree) {
   check_degree(degree);
   const auto mass = of_both([&](int dim) { return products(dim, degree, degree); });

@@ -60,7 +60,8 @@ public:
     add_reactions();
     known = add_contacts() && add_means();
     for (const Term &term : scene_.a)
-      known = known && (term.form.boundary.empty() || share(term.form.boundary) == 0);
+      known = known && !term.of_order_zero &&
+              (term.form.boundary.empty() || share(term.form.boundary) == 0);
     for (std::size_t c = 0; c < 3 && !forces.membrane; ++c)
       known = known && (direction[c] == 0 ||
                         !(cancels(scene_.mirrors, c) || (scene_.axisymmetric && c == 0)));
@@ -139,6 +140,7 @@ private:
         side = -1;
         if (*of_part != 0) forces.boundary = part;
       }
+      if (of_cells) sign *= scene_.contacts[i].push;
       if (sign != 0) forces.contacts[static_cast<int>(i)] = sign;
     }
     return true;

@@ -302,11 +302,12 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
       if (const auto dof = static_cast<std::size_t>(at->second);
           !is_new && dof < first.back() && bounds_alone(contact)) {
         const auto other = std::ranges::upper_bound(first, dof) - first.begin() - 1;
-        throw bad_input(both(scene.contacts[other], contact) +
-                        "both constrain the displacement along " + "xyz"[i % components] + " at " +
-                        place_text(found.mesh.points[i / components]) +
-                        ": give them boundaries without common nodes, or fix the displacement "
-                        "there");
+        if (!(scene.contacts[other].push * contact.push < 0)) // not from both sides
+          throw bad_input(both(scene.contacts[other], contact) +
+                          "both constrain the displacement along " + "xyz"[i % components] +
+                          " at " + place_text(found.mesh.points[i / components]) +
+                          ": give them boundaries without common nodes, or fix the displacement "
+                          "there");
       }
       if (is_new) natural_dofs.push_back(natural);
       found.mesh.dofs.push_back(at->second);

@@ -110,11 +110,16 @@ std::optional<MembraneForces> forces_on_membrane(const Problem &problem, const F
   std::array<double, 3> sums{forces.load, forces.flux, forces.sizes};
   over_ranks(problem.comm(), MPI_SUM, sums);
   forces.load = sums[0];
-  forces.contact = outputs.normal_force.value_or(0) / image_count(scene.mirrors);
-  for (const auto &interface : problem.contact().interfaces)
-    forces.contact -= pull_of(*interface, mu, {}).normal_force; // a load
+  forces.sizes = sums[2];
+  for (std::size_t i = 0; i < problem.contact().interfaces.size(); ++i) {
+    ContactInterface &interface = *problem.contact().interfaces[i];
+    const Outputs &one = outputs.interfaces.empty() ? outputs : outputs.interfaces[i];
+    const double force = one.normal_force.value_or(0) / image_count(scene.mirrors) -
+                         pull_of(interface, mu, {}).normal_force; // a load
+    forces.contact += scene.contacts[i].push * force;
+    forces.sizes += std::abs(force);
+  }
   forces.flux = sums[1] - contact_of_held(problem, mu, lambda);
-  forces.sizes = sums[2] + std::abs(forces.contact);
   return forces;
 }
 

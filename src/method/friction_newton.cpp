@@ -217,21 +217,12 @@ Vector System::right_side(const Vector &y) const {
   return Vector::NullaryExpr(unit_.size(), [&](Index k) { return -unit_[k] * along(list_[k], y); });
 }
 
-Matrix System::times_inverse(const Matrix &right) const {
-  if (rough_) return rough_->solve(right.cast<float>()).cast<double>();
-  if (!symmetric_) return lu_.solve(right);
-  Matrix x = right;
-  solve_lower(lower_, x);
-  solve_lower_transposed(lower_, x);
-  return x;
-}
-
 Vector System::refined(const Vector &right, double accuracy) const {
   constexpr double shrinks = 0.1;
   Vector u = Vector::Zero(right.size()), left = right;
   for (double before = std::numeric_limits<double>::infinity(), scale = 0;
        (scale = left.norm()) > 0;) {
-    const Vector change = scale * times_inverse(left / scale);
+    const Vector change = scale * times_inverse(Vector(left / scale));
     u += change;
     const double size = change.norm() / u.norm();
     if (size <= accuracy) return u;
@@ -247,7 +238,7 @@ Vector System::solve(const Vector &right, int refinements) const {
   if (rough_) return refined(right, refinements > 0 ? 1e-13 : 1e-3).cwiseProduct(unit_);
   Vector u = times_inverse(right);
   for (int k = 0; k < refinements; ++k)
-    u -= times_inverse(matrix_ * u - right);
+    u -= times_inverse(Vector(matrix_ * u - right));
   return u.cwiseProduct(unit_);
 }
 

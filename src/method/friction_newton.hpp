@@ -124,8 +124,15 @@ public:
 
 private:
   void assemble(const LazyColumns &h, const NodeLaws &laws);
-  /// The unknowns for right sides in their units, any number, as the factors have them.
-  Matrix times_inverse(const Matrix &right) const;
+  /// The unknowns for one right side (a Vector) or several, in their units, as the factors have
+  /// them.
+  template <class Right> Right times_inverse(Right right) const {
+    if (rough_) return rough_->solve(right.template cast<float>()).template cast<double>();
+    if (!symmetric_) return lu_.solve(right);
+    solve_lower(lower_, right);
+    solve_lower_transposed(lower_, right);
+    return right;
+  }
   /// -(a y[first] + b y[second]) of each row, in its unit.
   Vector right_side(const Vector &y) const;
   /// By the factors in single precision, which cost half, refined until they change by `accuracy`.

@@ -8,9 +8,9 @@ namespace rbvi {
 
 namespace {
 
-/// Largest eigenvalue of H by power iterations, to 1 %, rounded up by as much.
-double largest_eigenvalue(const UzawaProblem &p) {
-  Vector x = p.first / std::sqrt(p.dot(p.first, p.first));
+/// Largest eigenvalue of H by power iterations from `first`, to 1 %, rounded up by as much.
+double largest_eigenvalue(const UzawaProblem &p, const Vector &first) {
+  Vector x = first / std::sqrt(p.dot(first, first));
   double estimate = 0;
   for (int k = 0; k < 100; ++k) {
     x = p.times_h(x);
@@ -43,7 +43,11 @@ Vector beyond(const UzawaProblem &p, const Vector &extrapolated, const Vector &n
 } // namespace
 
 UzawaResult solve_uzawa(const UzawaProblem &problem, const UzawaOptions &options) {
-  const double step = options.step > 0 ? options.step : 1 / largest_eigenvalue(problem);
+  const auto usual_step = [&] { // H p.first is zero where obstacles push from both sides
+    const double largest = largest_eigenvalue(problem, problem.first);
+    return 1 / (largest > 0 ? largest : largest_eigenvalue(problem, problem.q));
+  };
+  const double step = options.step > 0 ? options.step : usual_step();
   UzawaResult result{Vector::Zero(problem.q.size())};
   Vector extrapolated = result.x;
   double momentum = 1;

@@ -169,7 +169,17 @@ EvaluatedContact::EvaluatedContact(const ReducedModel &model, const Scene &scene
   unit_loads_ = body.prepared(trace_.transpose());
   for (std::size_t k = 0; k < dofs.size(); ++k)
     place_[dofs[k]] = static_cast<int>(k);
-  if (!dofs.empty()) compliance_ = std::make_unique<OfModel>(model.contact.law->condensed);
+  if (dofs.empty()) return;
+  compliance_ = std::make_unique<OfModel>(model.contact.law->condensed);
+  FullMu usual;
+  for (const Parameter &parameter : scene.parameters.all)
+    usual.push_back(parameter.value);
+  try {
+    ContactOperators at_rest;
+    assemble(contact, usual, {}, at_rest);
+    usual_b_ = known_columns(rows_ * at_rest.b);
+  } catch (const Error &) { // bodies that do not face each other there
+  }
 }
 
 EvaluatedContact::~EvaluatedContact() = default;
@@ -185,12 +195,9 @@ bool EvaluatedContact::set_compliance(const FullMu &mu) {
 
 void EvaluatedContact::set(const FullMu &mu, const Vector &state, ReducedAnswer &answer) {
   assemble(contact_, mu, {state}, answer.contact);
-  SparseMatrix b = known_columns(rows_ * answer.contact.b);
-  if (b.rows() != b_.rows() || (b - b_).norm() > 0)
-    terms_.resize(0, 0);
-  else if (terms_.size() == 0 && compliance_)
-    terms_ = compliance_->condensed(b);
-  b_ = std::move(b);
+  b_ = known_columns(rows_ * answer.contact.b);
+  is_usual_ = usual_b_.rows() > 0 && (b_ - usual_b_).norm() == 0;
+  if (is_usual_ && terms_.size() == 0) terms_ = compliance_->condensed(usual_b_);
   g_ = rows_ * answer.contact.g;
   set_compliance(mu);
 }
@@ -215,7 +222,7 @@ SparseMatrix EvaluatedContact::known_columns(const SparseMatrix &b) const {
 }
 
 Matrix EvaluatedContact::condensed_columns(const std::vector<Index> &which) {
-  if (terms_.size() > 0) return columns_of_sum(terms_, compliance_->coefficients(), which);
+  if (is_usual_) return columns_of_sum(terms_, compliance_->coefficients(), which);
   return rbvi::condensed_columns(*compliance_, b_, which);
 }
 

@@ -65,7 +65,7 @@ Operand result(Operation operation, const Operand *of) {
 Dimensions::Dimensions(const Reader &reader) {
   if (!reader.units) return;
   const Dimension length = dimension_of("m"), stress = dimension_of("Pa");
-  of_name_ = {{"nx", {}}, {"ny", {}}, {"nz", {}}};
+  of_name_ = {{"nx", {}}, {"ny", {}}, {"nz", {}}, {"slope_x", {}}, {"slope_y", {}}};
   for (const char *name : {"x", "y", "z", "ux", "uy", "uz", "u", "gap", "slip"})
     of_name_[name] = length;
   for (const char *name : {"pressure", "tangential", "sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy",

@@ -41,6 +41,8 @@ const std::vector<CaseKey> all_keys{
     {"", "mirror", "table",
      "planes of mirror symmetry that the body goes on beyond: every number is of the whole body"},
     {"", "mirror_images", "1 | 2 | 4", "short for mirror: 2 is {x: 0}, 4 is {x: 0, y: 0}"},
+    {"", "zeroth", "expression",
+     "of a membrane: c of the term c u, not negative; x, y: of the mapped domain", false, "1/m^2"},
     {"", "v_length", "number",
      "L of the product (u, v) + L^2 (grad u, grad v) in which displacements are reduced; default: "
      "the longer side of the box of the mesh",
@@ -140,6 +142,7 @@ const std::vector<CaseKey> all_keys{
     {"contact.*", "at", "boundary or region", "a region for an obstacle", true},
     {"contact.*", "above", "expression", "height of the obstacle that a membrane stays above",
      false, "m"},
+    {"contact.*", "below", "expression", "likewise, stays below", false, "m"},
     {"contact.*", "against", "boundary or table", "another body, or something rigid"},
     {"contact.*", "normal", "auto | body | rigid | deformed",
      "that of the body at rest, of what is rigid, of the deformed body; auto: rigid, but body "
@@ -214,7 +217,8 @@ const std::vector<CaseKey> all_keys{
      "tangential (the tangential stress), slip, contact and stick (1 or 0); over boundaries nx, ny "
      "(the normal); in the "
      "body, on boundaries and at points sigma_xx, sigma_yy, sigma_zz, sigma_xy, von_mises, "
-     "strain_energy (elastic energy per volume); of solids z, uz, nz, sigma_yz, sigma_xz, too, and "
+     "strain_energy (elastic energy per volume), of a membrane slope_x, slope_y; of solids z, uz, "
+     "nz, sigma_yz, sigma_xz, too, and "
      "tangential and slip are sizes"},
     {"outputs.*", "mean", "expression", "its integral over the length or area"},
     {"outputs.*", "max", "expression", ""},

@@ -259,22 +259,26 @@ ContactRecipe with_another_body(Reader &reader, const CaseNode &node, const std:
 }
 
 ContactRecipe contact_in(Reader &reader, const CaseNode &node, Scene &scene) {
-  const CaseNode *above = node.find("above"), *against = node.find("against");
+  const CaseNode *above = node.find("above"), *below = node.find("below"),
+                 *against = node.find("against");
+  const bool on_obstacle = above != nullptr || below != nullptr;
   const CaseNode &at = entry(node, "at");
   if (!at.is_value() || at.value == "all")
     throw bad_input("contact is at one boundary, or one region, with a name: give each its entry");
-  if ((above == nullptr) == (against == nullptr))
-    throw bad_input("contact is 'above: HEIGHT' of a membrane, or 'against:' something");
-  if ((above != nullptr) != (scene.components == 1))
-    throw bad_input(above != nullptr ? "'above' is for a membrane: use 'against'"
-                                     : "a membrane has contact 'above: HEIGHT'");
-  if (above != nullptr) {
-    check_used(node, "of a membrane", {"at", "above", "adhesion", "lumped"});
-    const Obstacle on{at.value, point_value_of(formula_in(reader, *above)),
-                      yes_or(node, "lumped", true), adhesion_in(reader, node)};
+  if (int(above != nullptr) + int(below != nullptr) + int(against != nullptr) != 1)
+    throw bad_input("contact is 'above: HEIGHT' or 'below: HEIGHT' of a membrane (of both two "
+                    "contacts), or 'against:' something");
+  if (on_obstacle != (scene.components == 1))
+    throw bad_input(on_obstacle ? "'above' and 'below' are for a membrane: use 'against'"
+                                : "a membrane has contact 'above: HEIGHT' or 'below: HEIGHT'");
+  if (on_obstacle) {
+    check_used(node, "of a membrane", {"at", "above", "below", "adhesion", "lumped"});
+    const Obstacle on{
+        at.value, point_value_of(formula_in(reader, above != nullptr ? *above : *below)),
+        yes_or(node, "lumped", true), adhesion_in(reader, node), above != nullptr ? 1.0 : -1.0};
     std::optional<Form> of_one;
     if (map_of(reader).empty())
-      of_one = body_load(on.region, everywhere(Point{-1, 0, 0}), 1, scene.degree);
+      of_one = body_load(on.region, everywhere(Point{-on.side, 0, 0}), 1, scene.degree);
     if (on.adhesion) add_pull(reader, node, of_one, adhesive_load(on, scene), scene);
     return obstacle(on);
   }

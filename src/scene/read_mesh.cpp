@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <random>
 
@@ -36,7 +37,7 @@ MeshRecipe recipe_of_sections(const Reader &reader) {
     add(node, "between", recipe.boundaries);
   }
   for (const auto &[name, node] : section(reader, "contact").entries) {
-    add(node, "at", node.find("above") != nullptr ? recipe.regions : recipe.boundaries);
+    add(node, "at", node.find("against") == nullptr ? recipe.regions : recipe.boundaries);
     add(node, "against", recipe.boundaries);
   }
   for (const auto &[name, node] : section(reader, "outputs").entries) {
@@ -189,7 +190,7 @@ bool holds_of_slopes(const Reader &reader, const Scene &scene, const Holds &hold
     for (const Parameter &parameter : scene.parameters.all)
       at.push_back(parameter.lower + unit() * (parameter.upper - parameter.lower));
     // Bodies are of any size: six decades of it about 1.
-    const double size = std::pow(10, 6 * unit() - 3), angle = 2 * M_PI * unit();
+    const double size = std::pow(10, 6 * unit() - 3), angle = 2 * std::numbers::pi * unit();
     at.insert(at.end(), {size * std::cos(angle), size * std::sin(angle),
                          bound.size() > 2 ? size * (2 * unit() - 1) : 0});
     for (std::size_t c = 0; c < conditions.size(); ++c)

@@ -54,6 +54,7 @@ bool is_there(const std::string &name, Place place, const Scene &scene) {
   if (is_one_of(field::pressure, field::slip) || is_one_of(field::contact, field::stick))
     return place == Place::contact;
   if (is_one_of(field::nx, field::nz)) return place == Place::boundary;
+  if (is_one_of(field::slope_x, field::slope_y)) return membrane && place != Place::contact;
   if (is_one_of(field::sigma_xx, field::strain_energy)) return place != Place::contact && !membrane;
   return is_one_of(field::u, field::u) ? membrane : is_one_of(field::x, field::z) || !membrane;
 }
@@ -71,8 +72,9 @@ void check_fields(const Reader &reader, const Scene &scene, const OutputForm &fo
           ": pressure, gap, tangential, slip, contact and stick are over contacts (" +
           contact_names(scene) +
           "), nx and ny over boundaries, stresses and "
-          "strain_energy over boundaries, regions and at points of elastic bodies, u "
-          "is that of a membrane, ux and uy of others; z, uz, nz, sigma_yz and sigma_xz "
+          "strain_energy over boundaries, regions and at points of elastic bodies, slope_x and "
+          "slope_y likewise of a membrane; u is that of a membrane, ux and uy of others; z, uz, "
+          "nz, sigma_yz and sigma_xz "
           "are of solids");
     if (std::ranges::find(reader.parameters, name) != reader.parameters.end() ||
         std::ranges::find(reader.lets, name, &Let::name) != reader.lets.end())

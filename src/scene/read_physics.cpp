@@ -122,8 +122,11 @@ Form stiffness(const std::string &region, const std::function<Material> &materia
 /// is, of a body in space, or one that is turned, it is in proportion to the scale about a point
 /// (of the axis). Empty: the map changes more.
 std::optional<std::vector<Factor>> factors_of_map(Reader &reader, const Scene &scene) {
-  if (!scene.axisymmetric && scene.dim == 2)
-    return is_similarity(reader, scene) ? std::optional(std::vector<Factor>()) : std::nullopt;
+  if (!scene.axisymmetric && scene.dim == 2) {
+    const bool stays = scene.components == 1 ? is_similarity(reader, scene)
+                                             : keeps_directions(reader, scene); // of stresses
+    return stays ? std::optional(std::vector<Factor>()) : std::nullopt;
+  }
   if (const CaseNode *scale = section(reader, "map").find("scale"))
     return std::vector{factor_of(reader, expression_in(reader, *scale))};
   return map_of(reader).empty() ? std::optional(std::vector<Factor>()) : std::nullopt;
@@ -296,6 +299,29 @@ void read_load(Reader &reader, const CaseNode &node, Scene &scene) {
   count_once(regions_in(node), first, scene.f);
 }
 
+/// The term c u v: exact where the domain does not move and c separates.
+void read_zeroth(Reader &reader, const CaseNode &node, Scene &scene) {
+  if (scene.components != 1) throw bad_input("'zeroth' is of a membrane");
+  const Expression c = expression_in(reader, node);
+  const auto constant = expanded(c, reader.lets).constant();
+  if (constant && *constant < 0) throw bad_input("c of the term c u is not negative");
+  if (constant && *constant == 0) return;
+  const auto form = [&](const Expression &of) {
+    return weighted_product("", point_value_of(formula_of(reader, {of})), scene.degree);
+  };
+  const auto products = map_of(reader).empty() ? products_of(reader, c) : std::nullopt;
+  Sum terms;
+  if (products)
+    for (const Product &product : *products)
+      terms.push_back(exact_term(form(product.at_point), product.factors));
+  else
+    terms = {mapped_term(form(c), mapped_dependence(reader, formula_of(reader, {c})))};
+  for (Term &term : terms) {
+    term.of_order_zero = true;
+    scene.a.push_back(std::move(term));
+  }
+}
+
 } // namespace
 
 void read_physics(Reader &reader, Scene &scene, Defects &defects) {
@@ -308,6 +334,8 @@ void read_physics(Reader &reader, Scene &scene, Defects &defects) {
     const auto of_map = factors_of_map(reader, scene);
     scene.a = {of_map ? exact_term(form, *of_map) : mapped_term(form, dependence_of_map(reader))};
   }
+  if (const CaseNode &zeroth = section(reader, "zeroth"); !zeroth.value.empty())
+    defects.collect(zeroth, [&] { read_zeroth(reader, zeroth, scene); });
   const CaseNode &materials = section(reader, "materials");
   if (membrane != materials.entries.empty())
     defects.add(membrane ? materials : physics,

@@ -252,7 +252,9 @@ std::unique_ptr<ContactMethod> make_contact_method(Problem &problem, const HfOpt
   if (eliminates(problem, options))
     return make_elimination(problem, options,
                             std::make_unique<Condensed>(problem, options, ksp, changing));
-  return std::make_unique<Condensed>(problem, options, ksp, last);
+  auto condensed = std::make_unique<Condensed>(problem, options, ksp, last);
+  if (options.contact == HfContact::condensed) return condensed;
+  return make_rescued(problem, options, std::move(condensed));
 }
 
 } // namespace rbvi

@@ -58,6 +58,12 @@ std::unique_ptr<ContactMethod> make_distributed_method(Problem &problem, const H
 std::unique_ptr<ContactMethod> make_elimination(Problem &problem, const HfOptions &options,
                                                 std::unique_ptr<ContactMethod> otherwise);
 
+/// `first`; where that leaves more of the laws than a solution does, active sets on the
+/// displacement. Multipliers alone place a body that a soft spring holds only as well as their
+/// round-off lets the spring.
+std::unique_ptr<ContactMethod> make_rescued(Problem &problem, const HfOptions &options,
+                                            std::unique_ptr<ContactMethod> first);
+
 /// Sets the outputs, but for what the method itself knows. `weights`: of all normal multipliers.
 void measure(const Problem &problem, const Operators &op, const Vector &weights,
              MethodResult &result);

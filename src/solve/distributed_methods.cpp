@@ -77,6 +77,41 @@ private:
   std::unique_ptr<ContactMethod> otherwise_; ///< where it fails
 };
 
+class Rescued : public ContactMethod {
+public:
+  Rescued(Problem &problem, const HfOptions &options, std::unique_ptr<ContactMethod> first)
+      : problem_(problem), options_(options), first_(std::move(first)) {
+    options_.contact = HfContact::eliminated;
+  }
+  ContactRows begin(const Vector &slip) override { return first_->begin(slip); }
+  void set(const Operators &op) override { first_->set(op); }
+  MethodResult solve(const ContactTask &task) override {
+    MethodResult result = first_->solve(task);
+    if (!result.converged || result.residual <= residual_limit) return result;
+    if (!second_) second_ = make_elimination(problem_, options_, nullptr);
+    const Operators &op = problem_.assemble(task.mu, second_->begin(task.slip), task.slip);
+    try {
+      MethodResult other =
+          second_->solve({task.mu, op, task.slip, task.starts, task.near, task.continues});
+      other.reason += ", eliminated because a condensed residual of " +
+                      short_number(result.residual) + " was left";
+      return other;
+    } catch (const Error &) { // of every rank; the first one's residual says what to try
+      return result;
+    }
+  }
+  void check(const MethodResult &result) const override { first_->check(result); }
+  Solved kept(MethodResult &result) const override { return first_->kept(result); }
+  void share_columns(const Groups &groups, const std::vector<Mu> &set) override {
+    first_->share_columns(groups, set);
+  }
+
+private:
+  Problem &problem_;
+  HfOptions options_;
+  std::unique_ptr<ContactMethod> first_, second_; ///< null: not asked for yet
+};
+
 class OverRanks : public ContactMethod {
 public:
   OverRanks(Problem &problem, const HfOptions &options, KSP ksp)
@@ -117,6 +152,11 @@ private:
 std::unique_ptr<ContactMethod> make_elimination(Problem &problem, const HfOptions &options,
                                                 std::unique_ptr<ContactMethod> otherwise) {
   return std::make_unique<ByElimination>(problem, options, std::move(otherwise));
+}
+
+std::unique_ptr<ContactMethod> make_rescued(Problem &problem, const HfOptions &options,
+                                            std::unique_ptr<ContactMethod> first) {
+  return std::make_unique<Rescued>(problem, options, std::move(first));
 }
 
 std::unique_ptr<ContactMethod> make_distributed_method(Problem &problem, const HfOptions &options,

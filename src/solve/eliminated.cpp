@@ -208,6 +208,7 @@ Vector Eliminated::eliminate(const Operators &op, const Elimination &z, const El
   reduced.reduce(right.get());
 
   reduced.zero_pivots(u_.get());
+  if (norm(right.get()) == 0) RBVI_CALL(VecZeroEntries(u_.get())); // no noise of a start
   // Relative to the forces; those of the last sets are the best guess.
   const double forces = norm(op.f) + reaction_;
   Krylov how{symmetric, forces > 0 ? 1e-15 : accuracy, accuracy * forces,
@@ -281,6 +282,7 @@ SetSolution Eliminated::solve_system(const Operators &op, const OwnContact &cont
 MethodResult Eliminated::solve(const Operators &op, const Vector &start, double accuracy,
                                bool by_rule) {
   complaint_.clear();
+  reaction_ = 0; // that of another mu says nothing
   // Ties follow B, which changes with mu.
   if (tied_ || !constant_stiffness(problem_.scene())) of_another_a_ = true;
   MethodResult result;

@@ -1,6 +1,7 @@
 // Outputs of a case's own: what balances each other, full and reduced.
 #include "named_outputs.hpp"
 
+#include "rbvi/model/print.hpp"
 #include "rbvi/mor/reduced_balance.hpp"
 
 #include <cmath>

@@ -1,7 +1,9 @@
 // Contact with an obstacle in a region of the body (Niakh 2022, 2.4): u >= psi, held by a pressure
 // lambda >= 0 whose functions are the hats of the region's vertices, whatever the degree of u,
 //
-//   b(mu; v, eta) = -int v eta,   g(mu; eta) = -int psi eta   over the mapped region (2.40).
+//   b(mu; v, eta) = -int v eta,   g(mu; eta) = -int psi eta   over the mapped region (2.40);
+//
+// or u <= psi, where b and g have the other sign.
 // Niakh (2022): (2.39).
 #pragma once
 
@@ -19,12 +21,13 @@ struct Obstacle {
   /// what lies between them is in equilibrium with the load, and u is of order 1 as with degree 1.
   bool lumped = false;
   std::function<Coefficient> adhesion{}; ///< Friction::adhesion
+  double side = 1;                       ///< where the membrane is: 1, above it, or -1
 };
 
 /// For scalar displacements of degree 1 and 2.
 ContactRecipe obstacle(Obstacle obstacle);
 
-/// The load that pulls the membrane onto it, -int a v, as that of contact/facing.hpp.
+/// The load that pulls the membrane onto it, -side int a v, as that of contact/facing.hpp.
 Term adhesive_load(const Obstacle &obstacle, const Scene &scene);
 
 } // namespace rbvi

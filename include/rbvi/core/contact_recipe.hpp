@@ -59,6 +59,7 @@ struct ContactRecipe {
   bool follows_state = false;
   /// A reduced model keeps a multiplier at every node, unless asked otherwise: the law is exact.
   bool keeps_nodes = false;
+  double push = 0; ///< of an obstacle: where it pushes a membrane, 1, upwards, or -1
   /// Refused where they are not finite, before anything is solved (core/validity.hpp).
   std::vector<ContactCoefficient> coefficients{};
   /// `scene` must outlive the interface. Throws bad_input where the mesh does not suit it.

@@ -62,6 +62,8 @@ enum : std::size_t {
   strain_energy,
   contact,
   stick,
+  slope_x, ///< of a membrane, du/dx
+  slope_y,
   count
 };
 }

@@ -21,6 +21,10 @@ struct DisplacedCell {
 Point displacement_at(const Scene &scene, const DisplacedCell &cell,
                       const std::array<double, 4> &barycentric);
 
+/// The gradient of a scalar displacement there.
+Point slope_at(const Scene &scene, const DisplacedCell &cell,
+               const std::array<double, 4> &barycentric);
+
 /// Cauchy stress (Pa; of a plane or turned body zz is out of the plane) and elastic energy of a
 /// volume at a point. Constants are those at the centre of the cell.
 struct PointStress {

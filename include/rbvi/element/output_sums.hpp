@@ -34,21 +34,35 @@ public:
   /// pressure and no gap, what depends on the gap has no value and is left out.
   template <class Fields, class Seen, class Weight>
   void add(std::size_t lines, const Fields &fields, const Seen &seen, const Weight &weight) {
-    if (mirrors_.empty()) return add_image(lines, fields, seen, weight);
-    for (int image = 0; image < image_count(mirrors_); ++image) {
-      std::vector<std::size_t> own;
-      for (std::size_t line = 0; line < lines; ++line)
-        if (has_image(mirrors_, image, fields(line, 0), fields(line, 1))) own.push_back(line);
-      const auto reflected = [&](const auto &of) {
-        return [&](std::size_t line, double s) {
-          OutputFields at = of(own[line], s);
-          reflect(mirrors_, image, at);
-          return at;
-        };
-      };
-      add_image(own.size(), reflected(fields), reflected(seen),
-                [&](std::size_t line, const OutputFields &at) { return weight(own[line], at); });
-    }
+    for (int image = 0; image < image_count(mirrors_); ++image)
+      with_image(image, lines, fields,
+                 [&](const std::vector<std::size_t> &own, const auto &reflected) {
+                   find_parts(own.size(), reflected(seen));
+                   add_parts(reflected(fields), [&](std::size_t line, const OutputFields &at) {
+                     return weight(own[line], at);
+                   });
+                 });
+  }
+  /// Of one image, lines that the condition holds all along.
+  template <class Fields, class Weight>
+  void add_whole(int image, std::size_t lines, const Fields &fields, const Weight &weight) {
+    with_image(image, lines, fields,
+               [&](const std::vector<std::size_t> &own, const auto &reflected) {
+                 parts_.clear();
+                 for (std::size_t line = 0; line < own.size(); ++line)
+                   parts_.push_back({line, 0, 1});
+                 add_parts(reflected(fields), [&](std::size_t line, const OutputFields &at) {
+                   return weight(own[line], at);
+                 });
+               });
+  }
+  bool is_conditional() const { return form_.conditional; }
+  /// Whether the condition holds at the image of these fields.
+  bool holds(int image, OutputFields fields) const {
+    reflect(mirrors_, image, fields);
+    std::array<double, 2> value_and_condition;
+    form_.values(mu_, fields.data(), 1, value_and_condition.data());
+    return value_and_condition[1] != 0;
   }
 
   /// The measure and the integral, or of a maximum and a minimum these.
@@ -64,9 +78,23 @@ public:
   }
 
 private:
-  template <class Fields, class Seen, class Weight>
-  void add_image(std::size_t lines, const Fields &fields, const Seen &seen, const Weight &weight) {
-    find_parts(lines, seen);
+  /// add(lines that the image has, reflected), reflected(fields)(number of such a line, s).
+  template <class Fields, class Add>
+  void with_image(int image, std::size_t lines, const Fields &fields, const Add &add) {
+    std::vector<std::size_t> own;
+    for (std::size_t line = 0; line < lines; ++line)
+      if (mirrors_.empty() || has_image(mirrors_, image, fields(line, 0), fields(line, 1)))
+        own.push_back(line);
+    add(own, [&](const auto &of) {
+      return [&](std::size_t line, double s) {
+        OutputFields at = of(own[line], s);
+        reflect(mirrors_, image, at);
+        return at;
+      };
+    });
+  }
+
+  template <class Fields, class Weight> void add_parts(const Fields &fields, const Weight &weight) {
     std::vector<double> weights(places().size() * parts_.size());
     std::vector<bool> open(weights.size());
     evaluate(weights.size(), [&](std::size_t i) {

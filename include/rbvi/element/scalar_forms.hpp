@@ -13,6 +13,9 @@ namespace rbvi {
 /// int grad u . grad v over the mapped cells (2.37): nodes x nodes.
 Form laplace(const std::string &region, int degree = 1);
 
+/// int c u v over the mapped cells, exact where c is of degree 5 - 2 degree in x, a point of them.
+Form weighted_product(const std::string &region, const std::function<PointValue> &c, int degree);
+
 /// int u . v + length^2 grad u : grad v over the reference cells (2.44); local dof = node *
 /// components + component.
 Form h1_product(double length, int components = 1, int degree = 1);

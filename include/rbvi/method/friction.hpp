@@ -35,7 +35,7 @@ struct FrictionResult {
   std::vector<Index> active;     ///< nodes with x_n > 0, increasing
   std::vector<NodeState> states; ///< state of every node; an open one can slip or stick by Tresca:
                                  ///< its state is open all the same
-  int iterations = 0;            ///< linear systems solved
+  int iterations = 0;            ///< linear systems factorised
   int columns = 0;               ///< columns of H that were asked for
   int backup_steps = 0;          ///< fixed-point steps after a cycle
   double residual = 0;           ///< largest relative violation of the three laws

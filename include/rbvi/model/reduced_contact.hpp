@@ -74,7 +74,9 @@ private:
   Matrix unit_loads_;      ///< of a unit force at each of these dofs: ReducedBody::prepared
   std::unique_ptr<OfModel> compliance_; ///< null: the model has none
   SparseMatrix b_;                      ///< m x these dofs
-  Matrix terms_; ///< of H, as those of C; empty: B is another one than at the last mu
+  SparseMatrix usual_b_;  ///< that at the values of all parameters, which may serve all mu
+  bool is_usual_ = false; ///< b_ is that: H is then a sum of terms
+  Matrix terms_;          ///< these, as those of C; empty: not made yet
 };
 
 /// What the model has. All must outlive it.
