@@ -8,7 +8,10 @@
 #include <Eigen/SVD>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 namespace rbvi {
@@ -66,6 +69,23 @@ Matrix loose_motions(const NodeLaws &laws, const Matrix &held, const Vector &x) 
       });
 }
 
+namespace {
+
+/// Tractions whose sums with positive factors are all that a bound of 1 allows; of two components
+/// the corners about the circle, so that no load counts as unbalanced which is not.
+std::vector<std::array<double, 2>> tractions_of(Index components) {
+  if (components < 2) return {{-1, 0}, {1, 0}};
+  constexpr int corners = 32;
+  constexpr double turn = 2 * std::numbers::pi / corners;
+  std::vector<std::array<double, 2>> result;
+  for (int k = 0; k < corners; ++k)
+    result.push_back(
+        {std::cos(k * turn) / std::cos(turn / 2), std::sin(k * turn) / std::cos(turn / 2)});
+  return result;
+}
+
+} // namespace
+
 Vector unbalanced_load(const NodeLaws &laws, const Matrix &held, const Vector &load,
                        const Vector &terms) {
   constexpr double round_off = 1e-9;
@@ -76,12 +96,12 @@ Vector unbalanced_load(const NodeLaws &laws, const Matrix &held, const Vector &l
     const FrictionBound &bound = laws.bound[node];
     rays.push_back(normal);
     if (!laws.has_tangent(node) || !bound.carries_traction(true)) continue;
-    for (Index t = 0; t < laws.tangents; ++t)
-      for (const double sign : {-1.0, 1.0}) {
-        const Vector traction = sign * held.row(laws.tangent[node] + t).transpose();
-        const auto [offset, slope] = bound.piece(0);
-        rays.push_back(offset > 0 ? traction : Vector(normal + slope * traction));
-      }
+    for (const auto &[along, across] : tractions_of(laws.free_at(node))) {
+      Vector traction = along * held.row(laws.tangent[node]).transpose();
+      if (across != 0) traction += across * held.row(laws.tangent[node] + 1).transpose();
+      const auto [offset, slope] = bound.piece(0);
+      rays.push_back(offset > 0 ? traction : Vector(normal + slope * traction));
+    }
   }
   Matrix columns(load.size(), std::ssize(rays));
   for (std::size_t ray = 0; ray < rays.size(); ++ray)

@@ -71,6 +71,20 @@ TEST(Balance, ALoadIsBalancedInTheConeOfFriction) {
   EXPECT_EQ(unbalanced_load(laws, held, round_off, Vector::Ones(3)).norm(), 0);
 }
 
+/// In space it is a cone about a circle: what slides along an axis slides along all directions.
+TEST(Balance, TheConeOfFrictionIsRound) {
+  const NodeLaws laws = uniform_laws(1, 3, {.coefficient = 0.5});
+  Matrix held = Matrix::Identity(3, 3); // rows: normal, two tangents; motions along them
+  for (const double angle : {0.0, 0.1, 0.7853981633974483, 2.0}) {
+    const auto left = [&](double pull) {
+      const Vector load{{-1, pull * std::cos(angle), pull * std::sin(angle)}};
+      return unbalanced_load(laws, held, -load, load.cwiseAbs()).norm();
+    };
+    EXPECT_EQ(left(0.4999), 0) << angle;
+    EXPECT_GT(left(0.51), 1e-4) << angle;
+  }
+}
+
 /// H = H_0 + D D^T with springs of stiffness 1, D the motions on m nodes: at beta
 /// w = H x + q - D (beta + load), lengths = beta + load - D^T x.
 struct Problem {
