@@ -37,7 +37,8 @@ MeshRecipe recipe_of_sections(const Reader &reader) {
     add(node, "between", recipe.boundaries);
   }
   for (const auto &[name, node] : section(reader, "contact").entries) {
-    add(node, "at", node.find("against") == nullptr ? recipe.regions : recipe.boundaries);
+    const bool on_obstacle = node.find("above") != nullptr || node.find("below") != nullptr;
+    add(node, "at", on_obstacle ? recipe.regions : recipe.boundaries);
     add(node, "against", recipe.boundaries);
   }
   for (const auto &[name, node] : section(reader, "outputs").entries) {

@@ -253,7 +253,9 @@ std::unique_ptr<ContactMethod> make_contact_method(Problem &problem, const HfOpt
     return make_elimination(problem, options,
                             std::make_unique<Condensed>(problem, options, ksp, changing));
   auto condensed = std::make_unique<Condensed>(problem, options, ksp, last);
-  if (options.contact == HfContact::condensed) return condensed;
+  PetscBool iterative = PETSC_FALSE; // then its tolerance is what is to be changed
+  RBVI_CALL(PetscOptionsHasName(nullptr, nullptr, "-hf_ksp_type", &iterative));
+  if (options.contact == HfContact::condensed || iterative == PETSC_TRUE) return condensed;
   return make_rescued(problem, options, std::move(condensed));
 }
 

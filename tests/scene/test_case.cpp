@@ -67,7 +67,8 @@ TEST(Case, AStiffnessIsExactWhereItSeparates) {
   EXPECT_EQ(by_place.a.size(), 4U);
   const Scene turned =
       scene_of({{"map", "['(x*cos(k) - y*sin(k)) * depth', '(x*sin(k) + y*cos(k)) * depth + k']"}});
-  EXPECT_TRUE(turned.a.front().theta) << "a similarity";
+  EXPECT_FALSE(turned.a.front().theta) << "components of u do not turn with the body";
+  EXPECT_TRUE(scene_of({{"map", "[x*depth, y*depth + k]"}}).a.front().theta) << "a scale";
   const Scene sheared = scene_of({{"map", "[x + depth*y, y]"}});
   ASSERT_EQ(sheared.a.size(), 1U);
   EXPECT_FALSE(sheared.a.front().theta);

@@ -139,7 +139,7 @@ TEST(WrongCase, BodiesAndContact) {
       {{{"contact",
          "{floor: {at: [contact, top], against: {plane: {normal: [0, -1], position: 0}}}}"}},
        "contact is at one boundary"},
-      {floor("lumped: yes"), "'above: HEIGHT' of a membrane, or 'against:'"},
+      {floor("lumped: yes"), "contact is 'above: HEIGHT' or 'below: HEIGHT' of a membrane"},
       {floor("against: {}"), "against: a boundary"},
       {floor("against: {wall: {}}"), "unknown key 'wall'"},
       {floor("against: {plane: {normal: [0, -2], position: 0}}"), "give one of length 1"},
