@@ -69,6 +69,27 @@ TEST(Eliminated, AgreesOnARoofUnderDegreeTwo) {
     expect_equal(other.solve({height}), one.solve({height}));
 }
 
+/// What the answer before pressed with says nothing of one without load, which is zero.
+TEST(Eliminated, ForgetsTheForcesOfTheAnswerBefore) {
+  const Scene scene = make_scene(
+      read_case("rbvi: 1\nphysics: plane_strain\nmesh: {built_in: one_block, degree: 2}\n"
+                "parameters: {press: {range: [0, 1], default: 1}, room: {range: [-0.01, 0.1], "
+                "default: 0}}\nmaterials: {r: {at: all, E: 100, nu: 0.3}}\n"
+                "imposed: {side: {at: top, ux: 0, uy: 0}}\nloads: {own: {at: all, force: [0, "
+                "-press]}}\ncontact: {floor: {at: contact, against: {plane: {normal: [0, -1], "
+                "position: room}}}}\n",
+                "case.yaml"),
+      {});
+  Problem problem(PETSC_COMM_WORLD, scene, {});
+  HfOptions eliminated;
+  eliminated.contact = HfContact::eliminated;
+  HighFidelity solver(problem, eliminated);
+  EXPECT_GT(*solver.solve({1, 0}).outputs.normal_force, 0);
+  const HfSolution found = solver.solve({0, 0.1});
+  EXPECT_EQ(found.u.lpNorm<Eigen::Infinity>(), 0);
+  EXPECT_EQ(found.kkt.largest(), 0);
+}
+
 TEST(Eliminated, AgreesOnSupportsUnderEveryLaw) {
   for (const std::string friction : {"none", "tresca", "coulomb"})
     expect_agreement("rigid_disk", {{"arc_edges", "60"}, {"friction", friction}}, {{0.9}, {1.2}});
