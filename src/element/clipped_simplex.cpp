@@ -3,13 +3,14 @@
 #include "rbvi/core/dense.hpp"
 
 #include <cmath>
+#include <optional>
 
 namespace rbvi {
 
 namespace {
 
 constexpr int halvings = 6;    // of a triangle three times two, of a tetrahedron two times three
-constexpr int looks = 2;       // halvings that are made where nothing seems to change
+constexpr int looks = 4;       // halvings that are made where it passes somewhere in the whole
 constexpr int bisections = 45; // of an edge, to round-off
 
 Barycentric between(const Barycentric &a, const Barycentric &b, double s) {
@@ -17,6 +18,20 @@ Barycentric between(const Barycentric &a, const Barycentric &b, double s) {
   for (std::size_t k = 0; k < result.size(); ++k)
     result[k] = (1 - s) * a[k] + s * b[k];
   return result;
+}
+
+/// Whether it holds, or does not, at all points of the whole that quarters of its edges tell.
+std::optional<bool> at_all_points(int dim, const std::function<bool(const Barycentric &)> &holds) {
+  constexpr int parts = 4;
+  const bool first = holds({1, 0, 0, 0});
+  for (int i = 0; i <= parts; ++i)
+    for (int j = 0; i + j <= parts; ++j)
+      for (int k = dim == 2 ? parts - i - j : 0; i + j + k <= parts; ++k) {
+        const auto share = [](int count) { return static_cast<double>(count) / parts; };
+        if (holds({share(i), share(j), share(k), share(parts - i - j - k)}) != first)
+          return std::nullopt;
+      }
+  return first;
 }
 
 class Clip {
@@ -127,6 +142,8 @@ std::vector<Piece> pieces_where(int dim, const std::function<bool(const Barycent
   Piece whole{dim, {}};
   for (int i = 0; i <= dim; ++i)
     whole.corners[static_cast<std::size_t>(i)][static_cast<std::size_t>(i)] = 1;
+  if (const std::optional<bool> all = at_all_points(dim, holds))
+    return *all ? std::vector{whole} : std::vector<Piece>{};
   clip.add(whole, 0);
   return std::move(clip.pieces);
 }
