@@ -89,10 +89,8 @@ public:
     MethodResult result = first_->solve(task);
     if (!result.converged || result.residual <= residual_limit) return result;
     if (!second_) second_ = make_elimination(problem_, options_, nullptr);
-    const Operators &op = problem_.assemble(task.mu, second_->begin(task.slip), task.slip);
     try {
-      MethodResult other =
-          second_->solve({task.mu, op, task.slip, task.starts, task.near, task.continues});
+      MethodResult other = second_->solve(task); // which takes its own of all rows
       other.reason += ", eliminated because a condensed residual of " +
                       short_number(result.residual) + " was left";
       return other;

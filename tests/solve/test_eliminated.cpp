@@ -90,6 +90,28 @@ TEST(Eliminated, ForgetsTheForcesOfTheAnswerBefore) {
   EXPECT_EQ(found.kkt.largest(), 0);
 }
 
+/// A block that adheres to a floor without a load: multipliers alone leave more than a solution.
+TEST(Eliminated, TakesOverWhereMultipliersAreTooCoarse) {
+  const Scene scene = make_scene(
+      read_case("rbvi: 1\nphysics: plane_strain\nmesh: {built_in: one_block, degree: 2}\n"
+                "parameters: {lift: {range: [0, 1], default: 0}}\n"
+                "materials: {r: {at: all, E: 100, nu: 0.3}}\n"
+                "imposed: {side: {at: sides, ux: 0}}\nsprings: {hold: {at: top, direction: [0, 1], "
+                "stiffness: 0.001}}\nloads: {own: {at: all, force: [0, '-1 + 0*lift']}, pull: {at: "
+                "top, traction: [0, 0.1*lift]}}\ncontact: {floor: {at: contact, against: {plane: "
+                "{normal: [0, -1], position: 0}}}}\n",
+                "case.yaml"),
+      {});
+  Problem problem(PETSC_COMM_WORLD, scene, {});
+  HfOptions condensed;
+  condensed.contact = HfContact::condensed;
+  EXPECT_THROW(HighFidelity(problem, condensed).solve({0}), Error);
+  const HfSolution found = HighFidelity(problem, {}).solve({0});
+  EXPECT_LE(found.kkt.largest(), 1e-10);
+  const double modulus = 70 / 0.52; // lambda + 2 mu; the weight shortens it by height^2 / 2 of that
+  EXPECT_NEAR(*found.outputs.normal_force, 0.5 - 0.001 * 0.125 / modulus, 1e-11);
+}
+
 TEST(Eliminated, AgreesOnSupportsUnderEveryLaw) {
   for (const std::string friction : {"none", "tresca", "coulomb"})
     expect_agreement("rigid_disk", {{"arc_edges", "60"}, {"friction", friction}}, {{0.9}, {1.2}});
