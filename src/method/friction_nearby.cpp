@@ -57,9 +57,7 @@ void admit_changes(const LazyColumns &h, const NodeLaws &laws, const ActiveSets 
                    const ActiveSets &to, State &point) {
   const Vector before = point.x;
   for (Index i = 0; i < laws.nodes(); ++i)
-    if (from.is_active(i) != to.is_active(i) || from.tangent_at(i) != to.tangent_at(i) ||
-        from.piece[i] != to.piece[i])
-      admit(laws, to, i, point.x);
+    if (from.differs(to, i)) admit(laws, to, i, point.x);
   for (Index j = 0; j < before.size(); ++j)
     if (const double change = point.x[j] - before[j]; change != 0) point.w += change * h.column(j);
 }

@@ -41,9 +41,8 @@ std::vector<Index> ActiveSets::support(const NodeLaws &laws) const {
 
 Index ActiveSets::differences(const ActiveSets &other) const {
   Index count = 0;
-  for (std::size_t i = 0; i < active.size(); ++i)
-    count += active[i] != other.active[i] || tangent[i] != other.tangent[i] ||
-             piece[i] != other.piece[i];
+  for (Index i = 0; i < std::ssize(active); ++i)
+    count += differs(other, i);
   return count;
 }
 

@@ -36,7 +36,12 @@ struct ActiveSets {
   }
   /// The entries of x that need not be zero.
   std::vector<Index> support(const NodeLaws &laws) const;
-  /// The nodes in another state than in other sets, but for the direction of slip.
+  /// Whether a node is in another state than in other sets, but for the direction of slip; how
+  /// many are.
+  bool differs(const ActiveSets &other, Index i) const {
+    return active[i] != other.active[i] || tangent[i] != other.tangent[i] ||
+           piece[i] != other.piece[i];
+  }
   Index differences(const ActiveSets &other) const;
   /// A text that is equal for sets with the same linear system, in two dimensions.
   std::string key() const;

@@ -20,8 +20,8 @@ struct EntityValues {
 
 class EntitySum : public ContactInterface {
 public:
-  /// Sets b and g of `values`, which has its shape, or no columns of b. `entity`: its vertices, reference and mapped,
-  /// and the state, where there is one.
+  /// Sets b and g of `values`, which has its shape, or no columns of b. `entity`: its vertices,
+  /// reference and mapped, and the state, where there is one.
   virtual void integrate(const FullMu &mu, const Cell &entity, EntityValues &values) const = 0;
   /// The same, less b times the values imposed on the entity in g.
   void integrate_beside_imposed(const FullMu &mu, const Cell &entity, EntityValues &values) const;

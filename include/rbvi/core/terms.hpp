@@ -54,10 +54,9 @@ struct Term {
   std::optional<std::vector<Factor>> theta;
   /// Without theta: the parameters (as in Factor) that the kernel depends on; unset: all.
   std::optional<std::vector<int>> parameters = {};
-  bool of_imposed = false; ///< a load made by with_imposed_loads (element/imposed.hpp)
-  bool of_contact = false; ///< the pull of adhesion: outputs have it among the forces of contact
-  bool of_order_zero =
-      false; ///< of a membrane: it has no derivatives, so that a constant does work
+  bool of_imposed = false;    ///< a load made by with_imposed_loads (element/imposed.hpp)
+  bool of_contact = false;    ///< the pull of adhesion: outputs have it among the forces of contact
+  bool of_order_zero = false; ///< c u of a membrane, in which a constant does work
 };
 
 using Sum = std::vector<Term>;
