@@ -36,6 +36,13 @@ void warn_of_elements(const Scene &scene, double ratio, std::ostream &out) {
     out << "warning: with lumped: no above an obstacle pressures at nodes beside the edge of "
            "contact are up to 1.8 times too large, peak_pressure among them, and a finer mesh does "
            "not mend that: use lumped: yes; forces and displacements are right\n";
+  // Of patch on one body, 8 edges, the force is 0.83 of its value, of rigid_disk 0.991 on 100.
+  if (scene.degree == 2 && std::ranges::any_of(scene.contacts, [](const ContactRecipe &contact) {
+        return contact.entities.kind == InterfaceEntities::Kind::facets && contact.nodal;
+      }))
+    out << "warning: lumped: yes holds vertices alone, and nodes of degree 2 between them sink in: "
+           "forces are of order one in the length of an edge, a sixth too small on 8 edges: use "
+           "degree: 1, or leave lumped out\n";
 }
 
 } // namespace rbvi

@@ -121,7 +121,7 @@ CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
   }
   CondensedLoads loads{
       separated_loads(problem, affine, training, basis), basis.cols(), {}, affine.b_size() == 1};
-  if (!loads.join && affine.b.exact()) loads.dofs = loaded_dofs(problem, training, multipliers);
+  if (!loads.join) loads.dofs = loaded_dofs(problem, training, multipliers);
   return loads;
 }
 

@@ -47,12 +47,13 @@ void make_condensed(Reducing &at) {
   CondensedLoads loads = condensed_loads(problem, at.made.affine, training, multipliers, nodal);
   const bool awaits = has_no_functions(at) && awaits_answers(problem, loads, at.options.condensed);
   LinearBasis *modes = has_no_functions(at) && !awaits ? &bases.pod.basis : nullptr;
+  // First: how many A these need is told by what they have outside the modes.
+  if (!scene.f.empty())
+    bases.responses += add_load_responses(problem, at.made.affine, training, bases.pod.basis);
   Condensation made = condense(problem, loads, expand(scene.parameters, training.front()),
                                at.options.condensed, modes, nodal_coefficients(nodal, multipliers));
   bases.condensed = std::move(made.condensed);
-  bases.responses = made.responses;
-  if (!scene.f.empty())
-    bases.responses += add_load_responses(problem, at.made.affine, training, bases.pod.basis);
+  bases.responses += made.responses;
   bases.factorisations = made.factorisations;
   if (awaits) bases.awaiting = std::move(loads);
 }

@@ -123,11 +123,35 @@ void record_term(Eim &result, int p, const EntryKey &key, const Vector &at_pivot
   rows.push_back(at_pivot);
 }
 
+/// Whether the snapshots that the terms are made of are all that differ. `rows`: of each term the
+/// residuals before it at its pivot.
+bool takes_all_that_differ(const Eim &result, const std::vector<Vector> &rows) {
+  const auto repeats = [&](Index p, int j) {
+    const Index taken = result.snapshots[j];
+    for (int i = 0; i < result.size(); ++i) {
+      const double wanted = i <= j ? rows[i](taken) : 0;
+      if (!(std::abs(rows[i](p) - wanted) <= eim_tie * std::abs(rows[i](result.snapshots[i]))))
+        return false;
+    }
+    return true;
+  };
+  for (Index p = 0; p < rows[0].size(); ++p) {
+    bool known = std::ranges::find(result.snapshots, p) != result.snapshots.end();
+    for (int j = 0; j < result.size() && !known; ++j)
+      known = repeats(p, j);
+    if (!known) return false;
+  }
+  return true;
+}
+
 /// "" while the greedy has to go on.
-std::string stop_reason(const Eim &result, const EimOptions &options) {
+std::string stop_reason(const Eim &result, const EimOptions &options,
+                        const std::vector<Vector> &rows) {
   const double error = result.error.back();
   const int size = result.size();
   if (error <= exact_decomposition && size == 0) return "zero for every parameter: no term";
+  if (error <= exact_decomposition && size > 1 && takes_all_that_differ(result, rows))
+    return "a term for each snapshot that differs";
   if (error <= exact_decomposition)
     return "separable: rank " + std::to_string(size) + ", error at round-off";
   if (error <= options.tolerance) return "tolerance reached";
@@ -152,7 +176,7 @@ Eim eim(MPI_Comm comm, const Matrix &values, const std::vector<EntryKey> &keys,
   Eim result;
   result.error = {scale > 0 ? 1.0 : 0.0};
   std::vector<Vector> rows;
-  while ((result.reason = stop_reason(result, options)).empty()) {
+  while ((result.reason = stop_reason(result, options, rows)).empty()) {
     const int p = residuals.worst();
     const Pivot pivot = find_pivot(comm, residuals.columns.col(p), keys, residuals.maxima(p));
     const Vector at_pivot = residuals.row(pivot);

@@ -11,7 +11,8 @@ namespace rbvi {
 /// What grows by a point.
 enum class Grows {
   interpolant, ///< by a coefficient: these decrease along each axis, and the smallest bound holds
-  space        ///< by what its fields have outside: the largest of those of the points before
+  space        ///< by what its fields have outside: the largest of those of the points before;
+               ///< four points along each axis alone are taken whatever is outside
 };
 
 class GrowingGrid {

@@ -25,7 +25,10 @@ namespace {
 using enum StageKind;
 
 std::string terms(const char *name, const Eim &eim) {
-  return std::string(name) + " " + std::to_string(eim.size()) + (eim.exact() ? " (exact)" : "");
+  return std::string(name) + " " + std::to_string(eim.size()) +
+         (eim.exact()      ? " (exact)"
+          : eim.unproved() ? " (all samples that differ: more would tell whether it is exact)"
+                           : "");
 }
 
 /// "to 0.0001", and the tolerances of B^n and B^tau where they have their own.

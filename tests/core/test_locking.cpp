@@ -58,5 +58,17 @@ TEST(Overshoot, IsToldOfRegionsByExactQuadrature) {
   EXPECT_EQ(told({.entities = {facets, {}}}), "");
 }
 
+TEST(Vertices, AreNotEnoughForDegreeTwoOnABoundary) {
+  using enum InterfaceEntities::Kind;
+  for (const int degree : {1, 2}) {
+    Scene scene;
+    scene.degree = degree;
+    scene.contacts = {{.entities = {facets, {}}, .nodal = true}};
+    std::ostringstream out;
+    warn_of_elements(scene, 0, out);
+    EXPECT_EQ(out.str().find("sink in") != std::string::npos, degree == 2);
+  }
+}
+
 } // namespace
 } // namespace rbvi::locking_test

@@ -64,7 +64,8 @@ Vector theta_of(Problem &problem, const Eim &b, const std::vector<Mu> &training,
 CondensedOperator condensed_operator(Problem &problem, const AffineOperators &affine,
                                      const std::vector<Mu> &training, const Matrix &basis,
                                      const CondensedOptions &options) {
-  const CondensedLoads loads = condensed_loads(problem, affine, training, {}, basis);
+  const CondensedLoads loads = condensed_loads(
+      problem, affine, training, Matrix::Zero(problem.dual_size(), std::ssize(training)), basis);
   return condense(problem, loads, expand(problem.scene().parameters, training.front()), options)
       .condensed;
 }
@@ -116,8 +117,9 @@ TEST(Condensed, WhatOnlyScalesIsNotSampled) {
     scene.parameters = free_only(scene.parameters, free);
     Problem problem(PETSC_COMM_WORLD, scene, {});
     const AffineOperators affine = separate(problem, {mu}, {});
-    const Matrix basis = nodal_dual_basis(problem, Matrix::Zero(problem.dual_size(), 1));
-    const Condensation made = condense(problem, condensed_loads(problem, affine, {mu}, {}, basis),
+    const Matrix none = Matrix::Zero(problem.dual_size(), 1),
+                 basis = nodal_dual_basis(problem, none);
+    const Condensation made = condense(problem, condensed_loads(problem, affine, {mu}, none, basis),
                                        expand(scene.parameters, mu), {});
     EXPECT_EQ(made.factorisations, count) << free;
     EXPECT_LE(made.condensed.error, 1e-9);

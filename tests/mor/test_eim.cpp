@@ -150,6 +150,18 @@ TEST(Eim, one_snapshot_and_full_rank) {
   const Eim every = run(all, {.tolerance = 0});
   EXPECT_EQ(every.size(), 6);
   EXPECT_LE((interpolant(every, all) - all).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_FALSE(every.exact());
+  EXPECT_TRUE(every.unproved());
+}
+
+TEST(Eim, snapshots_that_repeat_prove_nothing) {
+  const Matrix all = random_matrix(entries, 4, 7);
+  Matrix twice(entries, 8);
+  twice << all, all;
+  EXPECT_TRUE(run(twice, {.tolerance = 0}).unproved());
+  Matrix more(entries, 9);
+  more << twice, all * Vector::LinSpaced(4, 1, 2);
+  EXPECT_TRUE(run(more, {.tolerance = 0}).exact());
 }
 
 TEST(Eim, zero_needs_no_term) {

@@ -18,7 +18,7 @@ inline constexpr double load_tolerance = 1e-9;
 struct CondensedOptions {
   double tolerance = 1e-9; ///< of the interpolation, relative
   int max_points = 33;     ///< along one parameter
-  double responses = 3e-3; ///< tolerance of responses of further A (condense); 0: none are appended
+  double responses = 1e-4; ///< tolerance of responses of further A (condense); 0: none are appended
   /// Where only the responses to answers of the law join the modes: what of these displacements may
   /// be left, relative, in the energy. Multipliers do not depend on it.
   double answers = 1e-5;
@@ -57,11 +57,10 @@ struct CondensedLoads {
 
 /// The loads of a basis of the multipliers. Where b separates (`affine`, over the samples at
 /// `training`) these are its terms on the basis, side by side; all of them join where there is one
-/// term, single dofs where it is an exact sum of more: where it is interpolated no response makes
-/// the displacement more exact. Where b is evaluated at each mu these are the unit vectors of the
-/// contact dofs that the rows of the basis and their neighbours meet at the training parameters, at
-/// random ones and in the corners of the box; of all contact dofs where contact follows the
-/// displacement. `multipliers`: dual dofs x P. Not collective.
+/// term, single dofs where there are more. Where b is evaluated at each mu these are the unit
+/// vectors of the contact dofs that the rows of the basis and their neighbours meet at the training
+/// parameters, at random ones and in the corners of the box; of all contact dofs where contact
+/// follows the displacement. `multipliers`: dual dofs x P. Not collective.
 CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
                                const std::vector<Mu> &training, const Matrix &multipliers,
                                const Matrix &basis);
@@ -71,8 +70,8 @@ CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
 /// tolerance needs more points than the most, says so on standard error, and the error stands in
 /// the operator.
 ///
-/// `modes`, where given: the responses A^-1 loads are appended to them, with A at the ends and in
-/// the middle of each of its free parameters, so that the displacement is as exact as the
+/// `modes`, where given: the responses A^-1 loads are appended to them, with A at the first five
+/// points along each of its free parameters, so that the displacement is as exact as the
 /// multipliers (snapshots alone do not contain the responses to new active sets). All responses of
 /// the first A are appended (remainders below 1e-8 of their norm left out), of every other A those
 /// parts that are larger than options.responses. Where all loads join and A is a sum of more than

@@ -34,8 +34,11 @@ struct Eim {
   std::vector<double> error; ///< e_EIM(j), j = 0, 1, ..., J (B.32): error[0] = 1
   std::string reason;        ///< "separable: rank 1, error at round-off", "tolerance reached", ...
   int size() const { return static_cast<int>(snapshots.size()); }
-  /// The sum of these terms is the operator at every training mu, to round-off.
+  /// The sum of these terms is the operator at every training mu, to round-off, and there are more
+  /// that differ than terms.
   bool exact() const { return reason.starts_with("separable"); }
+  /// There are no more that differ: what the sum misses at other mu is not known.
+  bool unproved() const { return reason.starts_with("a term for each"); }
 };
 
 /// Collective. `values`: local entries x P; `keys`: one per local entry, each owned by one rank.
