@@ -18,59 +18,6 @@ namespace rbvi {
 
 namespace {
 
-/// Of motions: rows that are this much smaller resist by round-off.
-constexpr double resists = 1e-8;
-
-Matrix null_space(const Matrix &rows) {
-  if (rows.rows() == 0) return Matrix::Identity(rows.cols(), rows.cols());
-  const Eigen::JacobiSVD<Matrix, Eigen::FullPivHouseholderQRPreconditioner> svd(
-      rows, Eigen::ComputeFullV);
-  const Vector &values = svd.singularValues();
-  const Index rank = (values.array() > resists * values[0]).count();
-  return svd.matrixV().rightCols(rows.cols() - rank);
-}
-
-/// Null space of some rows, given by R of their QR, or themselves where they are few.
-Matrix null_space(const Matrix &held, const std::vector<Index> &rows) {
-  const Matrix chosen = held(rows, Eigen::all);
-  return null_space(chosen.rows() > chosen.cols() ? triangular_factor(chosen) : chosen);
-}
-
-template <class Carries, class Sticks>
-Matrix not_held(const NodeLaws &laws, const Matrix &held, Carries &&carries, Sticks &&sticks) {
-  std::vector<Index> rows;
-  for (Index node = 0; node < laws.nodes(); ++node) {
-    if (carries(node)) rows.push_back(laws.normal[node]);
-    if (!laws.has_tangent(node) || !sticks(node)) continue;
-    for (Index t = 0; t < laws.tangents; ++t)
-      rows.push_back(laws.tangent[node] + t);
-  }
-  return null_space(held, rows);
-}
-
-} // namespace
-
-Matrix unresisted_motions(const NodeLaws &laws, const Matrix &held) {
-  return not_held(
-      laws, held, [](Index) { return true; },
-      [&](Index node) { return laws.bound[node].carries_traction(true); });
-}
-
-Matrix loose_motions(const NodeLaws &laws, const Matrix &held, const Vector &x) {
-  constexpr double least = 1e-9; // of the largest pressure and of the bound
-  double largest = 0;
-  for (const Index row : laws.normal)
-    largest = std::max(largest, x[row]);
-  const Vector bounds = bounds_of(laws, x);
-  return not_held(
-      laws, held, [&](Index node) { return x[laws.normal[node]] > least * largest; },
-      [&](Index node) {
-        return x.segment(laws.tangent[node], laws.tangents).norm() < (1 - least) * bounds[node];
-      });
-}
-
-namespace {
-
 /// Tractions whose sums with positive factors are all that a bound of 1 allows; of two components
 /// the corners about the circle, so that no load counts as unbalanced which is not.
 std::vector<std::array<double, 2>> tractions_of(Index components) {

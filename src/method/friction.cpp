@@ -1,8 +1,7 @@
-#include "rbvi/method/several_answers.hpp"
-
 #include "friction_convex.hpp"
 #include "friction_laws.hpp"
 #include "friction_normal.hpp"
+#include "friction_run.hpp"
 #include "pivoting.hpp"
 #include "rbvi/core/error.hpp"
 
@@ -16,34 +15,11 @@
 
 namespace rbvi {
 
-namespace friction {
-
-/// What problems that differ in q alone hand on.
-struct Kept {
-  std::set<std::string> known;    ///< keys of active sets on the way to answers to the last q
-  std::optional<System> system;   ///< in the plane, the last one of the laws themselves
-  std::string key;                ///< of its sets
-  std::optional<ActiveSets> sets; ///< of the last answer
-};
-
-} // namespace friction
-
 namespace {
 
 using namespace friction;
 
 constexpr double round_off = 1e-11; ///< of the violation of a law, relative
-
-void check(const Vector &q, const NodeLaws &laws, const Vector &start) {
-  if (q.size() != laws.rows)
-    throw failure("friction: the right-hand side has " + std::to_string(q.size()) +
-                  " entries, and the laws " + std::to_string(laws.rows));
-  if (start.size() != 0 && start.size() != q.size())
-    throw failure("friction: the first guess has " + std::to_string(start.size()) +
-                  " entries instead of " + std::to_string(q.size()));
-  if (!q.allFinite()) throw failure("friction: the right-hand side is not finite");
-  if (!start.allFinite()) throw failure("friction: the first guess is not finite");
-}
 
 class Solver {
 public:
@@ -320,80 +296,14 @@ private:
 
 } // namespace
 
-struct FrictionSolver::Parts {
-  Parts(LazyColumns of, const NodeLaws &by) : laws(by), h(std::move(of)) { rbvi::check(laws); }
-  FrictionAnswer run(const Vector &start, bool rule, bool searches) {
-    check(q, laws, start);
-    if (laws.friction()) return Solver(h, q, laws, options, kept).run(start, rule, searches);
-    return {without_friction(h, q, laws, start, options)};
-  }
+namespace friction {
 
-  const NodeLaws laws;
-  LazyColumns h;
-  Vector q; ///< of the last answer
-  FrictionOptions options;
-  bool by_rule = false;
-  Kept kept;
-
-  /// The last answer(), and the system of its active sets once that is asked for.
-  struct Answered {
-    Vector x, start;
-    std::optional<ActiveSets> sets; ///< empty: without friction, where x tells them
-    std::optional<System> tangent{};
-  };
-  std::optional<Answered> last;
-};
-
-FrictionSolver::FrictionSolver(ColumnSource columns, const NodeLaws &laws)
-    : parts_(std::make_unique<Parts>(LazyColumns(std::move(columns), laws.rows), laws)) {}
-
-FrictionSolver::FrictionSolver(const ScaledMatrix &h, const NodeLaws &laws)
-    : parts_(std::make_unique<Parts>(LazyColumns(h), laws)) {}
-
-FrictionSolver::~FrictionSolver() = default;
-
-FrictionAnswer FrictionSolver::answer(const Vector &q, const Vector &start, bool by_rule,
-                                      const FrictionOptions &options) {
-  parts_->q = q;
-  parts_->options = options;
-  parts_->by_rule = by_rule;
-  parts_->kept.known.clear();
-  parts_->last.reset();
-  FrictionAnswer answer = parts_->run(start, by_rule, false);
-  if (!answer.converged) return answer;
-  parts_->last = {answer.x, answer.start, std::move(parts_->kept.sets)};
-  return answer;
+FrictionAnswer run_friction(LazyColumns &h, const Vector &q, const NodeLaws &laws,
+                            const FrictionOptions &options, Kept &kept, const Vector &start,
+                            bool by_rule, bool searches) {
+  return Solver(h, q, laws, options, kept).run(start, by_rule, searches);
 }
 
-NearAnswer FrictionSolver::near(const Vector &left, const NodeLaws &laws) const {
-  if (!parts_->last) throw failure("friction: there is no answer to go on from");
-  Parts::Answered &last = *parts_->last;
-  const LazyColumns &h = parts_->h;
-  if (!last.tangent)
-    last.tangent.emplace(h, parts_->laws,
-                         last.sets ? *last.sets : contact_sets(parts_->laws, last.x));
-  State point = last.tangent->near(h, last.x, parts_->laws, left, laws);
-  if (!point.x.allFinite()) throw failure("friction: what touches does not tell its tractions");
-  const Vector start = smooth_start(h.diagonal(), laws, point);
-  return {std::move(point.x), std::move(point.w), start,
-          predicted_sets(laws, start).key() == predicted_sets(parts_->laws, last.start).key()};
-}
-
-FrictionAnswer FrictionSolver::another(const Vector &start, bool by_rule) {
-  return parts_->run(start, by_rule, true);
-}
-
-Matrix FrictionSolver::change(const Matrix &of_q) const {
-  const std::optional<System> &system = parts_->kept.system;
-  return system ? system->change(parts_->laws, of_q) : Matrix();
-}
-
-const NodeLaws &FrictionSolver::laws() const {
-  return parts_->laws;
-}
-
-bool FrictionSolver::by_rule() const {
-  return parts_->by_rule;
-}
+} // namespace friction
 
 } // namespace rbvi

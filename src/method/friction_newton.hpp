@@ -101,9 +101,11 @@ inline double along(const Unknown &row, const Vector &vector) {
 }
 /// The part of x that no unknown changes: what bounds of slipping nodes have at x_n = 0.
 Vector fixed_part(const NodeLaws &laws, const ActiveSets &sets);
-/// x of the unknowns u, beside its fixed part `x`; slipping nodes on their circle.
+/// x of the unknowns u, beside its fixed part `x`.
 Vector expand(const NodeLaws &laws, const ActiveSets &sets, const std::vector<Unknown> &list,
               const Vector &u, Vector x);
+/// The tractions of nodes that slip become as long as their bounds, which turns them.
+void bring_to_circles(const NodeLaws &laws, const ActiveSets &sets, Vector &x);
 
 /// With friction a singular matrix need not be a fault of H.
 enum class Solved { yes, singular, indefinite, far };

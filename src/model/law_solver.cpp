@@ -32,7 +32,7 @@ void NodeLawSolver::solve_at_nodes(const LawAtMu &law, ReducedAnswer &answer) {
   if (!found.converged)
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: " + found.reason);
-  if (answer.motions) answer.motions->slope = friction.change(law.by_beta);
+  if (answer.motions) answer.motions->slope = friction.change(law.by_beta, false);
   if (!answer.motions)
     answer.to_other = distance_seen(friction, found, looks_for_others_);
   else if (looks_for_others_)
@@ -72,9 +72,7 @@ std::optional<ReducedAnswer> NodeLawSolver::near(const ReducedAnswer &from, cons
   NearAnswer found = near_->near(left, law.laws);
   if (answer.motions) {
     const FreeMotions &motions = *answer.motions;
-    Matrix slope(left.size(), law.by_beta.cols());
-    for (Index k = 0; k < slope.cols(); ++k)
-      slope.col(k) = near_->near(left + law.by_beta.col(k), law.laws).x - found.x;
+    const Matrix slope = near_->change(law.by_beta, true);
     const Vector change = lu_solve(motions.held.transpose() * slope,
                                    motions.load - motions.held.transpose() * found.x);
     if (!change.allFinite()) throw failure("nothing holds a body at the answer");

@@ -19,6 +19,16 @@ template <class Found> void take(Found &&found, MethodResult &result) {
   result.reason = std::move(found.reason);
 }
 
+/// MethodResult::moved. `q`: g - B u_0.
+double moved_by_parts(const Operators &op, const Vector &q, const Vector &w) {
+  const Vector parts = (op.g - q).cwiseAbs() + (w - q).cwiseAbs();
+  double largest = 0;
+  for (Index node = 0; node < op.laws.nodes(); ++node)
+    if (op.weights[node] > 0)
+      largest = std::max(largest, parts[op.laws.normal[node]] / op.weights[node]);
+  return largest;
+}
+
 /// u of A u = F - B^T lambda by that of an earlier lambda: where u is large beside its round-off, B
 /// u stays as exact as the change is small.
 void move_by_change(FullBody &body, const Operators &op, const MethodResult &before,
@@ -57,6 +67,7 @@ MethodResult solve_active_set(FullBody &body, const Operators &op, const Vector 
     take(std::move(found), result);
   }
   if (result.lambda.size() == 0) return result; // not converged: there is no displacement either
+  result.moved = moved_by_parts(op, q, result.w);
   if (options.refined != nullptr)
     move_by_change(body, op, *options.refined, result);
   else

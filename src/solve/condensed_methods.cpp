@@ -146,7 +146,8 @@ MethodResult Condensed::refined(FullBody &body, const ContactTask &task) {
   const auto add = [&](const Vector &start, const ActiveSetOptions &options) {
     MethodResult &result = passes.emplace_back(solve_active_set(body, op, start, options));
     if (result.converged)
-      result.kkt = kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda);
+      result.kkt =
+          kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda, result.moved);
     return result.converged;
   };
   ActiveSetOptions first{!task.continues, options_.looks_for_others, {}};

@@ -39,7 +39,8 @@ Equilibrium equilibrium(const Operators &op, Vec u, Vec reaction) {
 
 } // namespace
 
-KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const Vector &lambda) {
+KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const Vector &lambda,
+                         double moved) {
   const Handle<Vec> reaction = like(op.f);
   RBVI_CALL(VecZeroEntries(reaction.get()));
   const Vector bt_lambda = op.b.transpose() * lambda;
@@ -47,8 +48,9 @@ KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const V
   const auto [stationarity, displacement] = equilibrium(op, u, reaction.get());
   const Vector excess = op.b * restrict_to(trace, u) - op.g;
   const double stress = lambda.size() > 0 ? lambda.lpNorm<Eigen::Infinity>() : 0;
-  return residual_of({op.laws, op.weights, op.g, lambda, excess, displacement, stress},
-                     stationarity);
+  return residual_of(
+      {op.laws, op.weights, op.g, lambda, excess, std::max(displacement, moved), stress},
+      stationarity);
 }
 
 KktResidual kkt_residual(const DistributedContact &contact, const Operators &op, Vec u,

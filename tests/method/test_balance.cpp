@@ -105,7 +105,7 @@ struct Problem {
     w = answer.w;
     SpringState state{beta + load - held.transpose() * x,
                       forces_on_motions(laws, held, load.cwiseAbs(), x).norm()};
-    if (slopes) state.slope = -held.transpose() * solver.change(-held);
+    if (slopes) state.slope = -held.transpose() * solver.change(-held, true);
     return state;
   }
 };

@@ -212,29 +212,29 @@ TEST(FrictionRule, FindsTheOnlyAnswer) {
     }
 }
 
-/// Against differences, in the plane, where sets stay.
+/// Against differences where sets stay; their system is at hand in the plane alone.
 TEST(FrictionSolver, TellsHowAnAnswerChangesWithItsRightSide) {
   Random random(8);
   const Index n = 24;
   const Matrix h = random_positive(random, n, 3);
   const Vector q = random.vector(n), of_q = random.vector(n);
   const double step = 1e-7;
-  for (const FrictionBound &bound : {FrictionBound{0.4, 0, false}, FrictionBound{0, 0.2, false}}) {
-    FrictionSolver solver(columns_of(h), uniform_laws(12, 2, bound));
-    const FrictionAnswer found = solver.answer(q, {}, false);
-    const Matrix change = solver.change(of_q);
-    const FrictionAnswer moved = solver.answer(q + step * of_q, found.start, false);
-    ASSERT_TRUE(found.converged && moved.converged && found.states == moved.states);
-    ASSERT_EQ(change.cols(), 1);
-    EXPECT_LT((change - (moved.x - found.x) / step).norm(), 1e-6 * change.norm());
-    EXPECT_GT(change.norm(), 0.1);
-  }
-  FrictionSolver in_space(columns_of(h), uniform_laws(8, 3, {0.4, 0, false}));
-  ASSERT_TRUE(in_space.answer(q, {}, false).converged);
-  EXPECT_EQ(in_space.change(of_q).size(), 0);
-  FrictionSolver smooth(columns_of(h), uniform_laws(12, 2, {}));
-  ASSERT_TRUE(smooth.answer(q, {}, false).converged);
-  EXPECT_EQ(smooth.change(of_q).size(), 0);
+  for (const int dim : {2, 3})
+    for (const FrictionBound &bound :
+         {FrictionBound{0.4, 0, false}, FrictionBound{0, 0.2, false}, FrictionBound{}}) {
+      const bool friction = bound.carries_traction(true);
+      FrictionSolver solver(columns_of(h), uniform_laws(n / dim, dim, bound));
+      const FrictionAnswer found = solver.answer(q, {}, false);
+      EXPECT_EQ(solver.change(of_q, false).size() > 0, friction && dim == 2);
+      const Matrix change = solver.change(of_q, true);
+      const Matrix far = 1e-9 * solver.change(1e9 * of_q, true);
+      EXPECT_LT((far - change).norm(), 1e-12 * change.norm()) << "whatever its size";
+      const FrictionAnswer moved = solver.answer(q + step * of_q, found.start, false);
+      ASSERT_TRUE(found.converged && moved.converged && found.states == moved.states);
+      ASSERT_EQ(change.cols(), 1);
+      EXPECT_LT((change - (moved.x - found.x) / step).norm(), 1e-6 * change.norm());
+      EXPECT_GT(change.norm(), 0.1);
+    }
 }
 
 } // namespace

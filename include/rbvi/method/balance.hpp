@@ -49,8 +49,8 @@ Balance find_balance(Vector beta, const std::function<SpringState(const Vector &
 /// Orthonormal combinations of the free motions that no multiplier resists, whatever it is:
 /// motions x any number. `held`: B Z, rows of multipliers x motions.
 Matrix unresisted_motions(const NodeLaws &laws, const Matrix &held);
-/// The same of multipliers x: pressures that carry, and traction where it sticks. There the answer
-/// is one of many.
+/// The same of multipliers x: pressures that carry, traction where it sticks, and in space its
+/// turning where it slips. There the answer is one of many.
 Matrix loose_motions(const NodeLaws &laws, const Matrix &held, const Vector &x);
 /// The part of a load on the free motions that no pressure and no friction balance; zero where they
 /// can, thresholds not looked at. `terms`: the sums of the sizes of what the load is made of.

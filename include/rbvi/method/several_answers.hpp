@@ -55,9 +55,10 @@ public:
   /// To the last q, from another start. In the plane active sets tell all that follow: this ends,
   /// not converged, where it comes to some that were met on the way to an answer before.
   FrictionAnswer another(const Vector &start, bool by_rule);
-  /// Changes of the x of the last answer() by those of q (columns), while its active sets stay;
-  /// empty where they are not known: in space, or without friction. To be asked before another().
-  Matrix change(const Matrix &of_q) const;
+  /// Changes of the x of the last answer() by those of q (columns), while its active sets stay. To
+  /// be asked before another(). `anew`: their system is factorised where it is not there; else
+  /// nothing is returned, as in space or without friction.
+  Matrix change(const Matrix &of_q, bool anew) const;
   /// The answer where H, q and the laws are others, near the last answer(): one step with the
   /// system of its active sets, which is factorised once. `left`: of that problem, H x + q at the x
   /// of that answer; `laws`: of that problem, of the same nodes. Throws failure where there is no

@@ -20,6 +20,9 @@ struct MethodResult : HfSolution {
   Vector w;           ///< of solve_active_set: H lambda + q
   Matrix pressures;   ///< of Nitsche's method: NitscheSolution::pressures
   double u_error = 0; ///< FullBody::displacement
+  /// Of solve_active_set: how far loads and multipliers move a node apart, |B u_0| + |B (u - u_0)|
+  /// over its weight, the largest, with u_0 without multipliers.
+  double moved = 0;
   bool converged = false;
 };
 
@@ -62,8 +65,10 @@ void require_bounds_at_nodes(const Scene &scene);
 /// are those of local frames. Collective.
 MethodResult solve_vi(Problem &problem, const DistributedContact &contact, const Operators &op);
 
-/// With all rows of B on every rank, or distributed. Collective.
-KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const Vector &lambda);
+/// With all rows of B on every rank, or distributed. `moved`: MethodResult::moved, where it is
+/// known. Collective.
+KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const Vector &lambda,
+                         double moved = 0);
 KktResidual kkt_residual(const DistributedContact &contact, const Operators &op, Vec u, Vec lambda);
 
 /// The nodes with a positive normal multiplier.
