@@ -6,7 +6,7 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/lagrange.hpp"
 #include "rbvi/element/output_sums.hpp"
-#include "surface_lines.hpp"
+#include "surface_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -246,6 +246,19 @@ void add_lines(const std::vector<ContactLine> &lines, bool turned, OutputLines &
            });
 }
 
+/// Adds the boundary of an interface to an output; `turned`: axisymmetric.
+using Boundary = std::function<void(bool turned, OutputLines &sums)>;
+
+Boundary boundary_of(const Grid &grid, const FrictionBound &bound, double least) {
+  if (grid.per_cell > 2)
+    return [surface = ContactSurface(grid, bound, least)](bool, OutputLines &sums) {
+      surface.add_to(sums);
+    };
+  return [lines = contact_lines(grid, bound, least)](bool turned, OutputLines &sums) {
+    add_lines(lines, turned, sums);
+  };
+}
+
 /// What contact pushes the first body of interface i with; of tangential multipliers alone, where
 /// it is that of friction.
 PointForces forces_of(const Contact &contact, std::size_t i, const FullMu &mu,
@@ -284,8 +297,7 @@ double moment_of(const OutputForm &form, const FullMu &mu, const MirrorPlanes &m
 } // namespace
 
 std::vector<ContactLine> contact_lines(const Grid &grid, const FrictionBound &bound, double least) {
-  std::vector<ContactLine> lines =
-      grid.per_cell > 2 ? surface_lines(grid, bound, least) : Lines(grid, bound, least).cut();
+  std::vector<ContactLine> lines = Lines(grid, bound, least).cut();
   for (ContactLine &line : lines)
     for (auto *places : {&line.fields, &line.seen})
       for (OutputFields &fields : *places)
@@ -346,7 +358,7 @@ void add_named_outputs(const Scene &scene, const Contact &contact, const FullMu 
     return image_count(scene.mirrors) * force;
   };
   outputs.named.clear();
-  std::vector<std::optional<std::vector<ContactLine>>> of(contact.interfaces.size());
+  std::vector<Boundary> of(contact.interfaces.size());
   for (std::size_t k = 0; k < scene.outputs.size(); ++k) {
     const OutputForm &form = scene.outputs[k];
     if (!is_asked(sources.only, form.name)) continue;
@@ -365,11 +377,11 @@ void add_named_outputs(const Scene &scene, const Contact &contact, const FullMu 
         if (std::ranges::find(form.at, contact.names[i]) == form.at.end()) continue;
         ContactInterface &interface = *contact.interfaces[i];
         if (!of[i])
-          of[i] = contact_lines(
+          of[i] = boundary_of(
               interface.fields(mu, sources.of_interface(i),
                                lambda.segment(contact.first_row[i], interface.dual().size()), true),
               interface.bound(mu), sources.least_pressure);
-        add_lines(*of[i], scene.axisymmetric, lines);
+        of[i](scene.axisymmetric, lines);
       }
       value = output_value(form, lines.sums());
     }

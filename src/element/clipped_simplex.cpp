@@ -1,4 +1,4 @@
-#include "clipped_simplex.hpp"
+#include "rbvi/element/clipped_simplex.hpp"
 
 #include "rbvi/core/dense.hpp"
 

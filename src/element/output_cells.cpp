@@ -1,12 +1,11 @@
 #include "rbvi/element/output_cells.hpp"
 
-#include "clipped_simplex.hpp"
 #include "rbvi/element/cell_fields.hpp"
 #include "rbvi/element/facets.hpp"
 #include "rbvi/element/lagrange.hpp"
 #include "rbvi/element/output_sums.hpp"
 #include "rbvi/element/quadrature.hpp"
-#include "simplex_lines.hpp"
+#include "rbvi/element/simplex_lines.hpp"
 
 #include <cmath>
 
@@ -124,26 +123,12 @@ void add_simplex(const OutputState &state, const OutputPart &part, OutputLines &
     if (!whole) std::copy_n(facet.normal.begin(), dim, fields.begin() + field::nx);
     return fields;
   };
-  const auto weight_of = [&](const SimplexLines &own) {
-    return [&](std::size_t line, const OutputFields &fields) {
-      return own.measure(line) * circumference(state.scene.axisymmetric, {fields[field::x], 0, 0});
-    };
-  };
-  if (own_dim == 1 || !lines.is_conditional()) {
-    const SimplexLines own(own_dim, size, lines);
-    return lines.add(
-        own.count(), [&](std::size_t line, double s) { return fields_of(own.at(line, s)); },
-        weight_of(own));
-  }
-  for (int image = 0; image < image_count(state.scene.mirrors); ++image)
-    for (const Piece &piece : pieces_where(
-             own_dim, [&](const Barycentric &at) { return lines.holds(image, fields_of(at)); })) {
-      const SimplexLines own(own_dim, size * piece.share(), lines);
-      lines.add_whole(
-          image, own.count(),
-          [&](std::size_t line, double s) { return fields_of(piece.at(own.at(line, s))); },
-          weight_of(own));
-    }
+  add_simplex(
+      own_dim, size, fields_of,
+      [&](const OutputFields &fields) {
+        return circumference(state.scene.axisymmetric, {fields[field::x], 0, 0});
+      },
+      lines);
 }
 
 void add_point(const OutputState &state, const OutputPart &part, const Point &point,

@@ -145,9 +145,11 @@ MethodResult Condensed::refined(FullBody &body, const ContactTask &task) {
   passes.reserve(while_refused + 1);
   const auto add = [&](const Vector &start, const ActiveSetOptions &options) {
     MethodResult &result = passes.emplace_back(solve_active_set(body, op, start, options));
+    // Of a body that contact alone holds, whose springs are as stiff as itself, the motion under
+    // its load is round-off's measure; one on soft springs of its own shall be more exact.
+    const double moved = problem_.free_bodies().empty() ? 0 : result.moved;
     if (result.converged)
-      result.kkt =
-          kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda, result.moved);
+      result.kkt = kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda, moved);
     return result.converged;
   };
   ActiveSetOptions first{!task.continues, options_.looks_for_others, {}};

@@ -1,4 +1,5 @@
 // The lines that integrals over contact are taken along.
+#include "../../src/contact/surface_parts.hpp"
 #include "rbvi/contact/named_outputs.hpp"
 
 #include <gtest/gtest.h>
@@ -159,40 +160,73 @@ Grid squares(const std::function<std::array<double, 2>(double, double)> &pressur
   return grid;
 }
 
+/// Over squares, an integral of what `value` and where `condition` says.
+double over(const ContactSurface &surface, const std::function<double(const double *)> &value,
+            const std::function<bool(const double *)> &condition = nullptr) {
+  OutputForm form;
+  form.conditional = condition != nullptr;
+  form.values = [&](const FullMu &, const double *fields, std::size_t count, double *results) {
+    std::array<double, field::count> at;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t c = 0; c < at.size(); ++c)
+        at[c] = fields[c * count + i];
+      results[i] = value(at.data());
+      results[count + i] = condition == nullptr || condition(at.data()) ? 1 : 0;
+    }
+  };
+  OutputLines lines(form, {}, {});
+  surface.add_to(lines);
+  return lines.sums().integral;
+}
+
+double one(const double *) {
+  return 1;
+}
+
 /// Nodes touch up to x = 3/4 and stick up to x = 1/4, and so it is up to the middles of the edges
 /// beyond them.
-TEST(ContactLines, OfTrianglesHaveTheAreasOfTheirNodes) {
-  const auto areas = [](const std::vector<ContactLine> &lines) {
-    std::array<double, 4> sums{}; // whole, in contact, sticking, the integral of x y over that
-    for (const auto &[fields, seen, measure] : lines) {
-      const auto &[first, last, middle] = fields;
-      sums[0] += measure;
-      sums[1] += measure * middle[field::contact];
-      sums[2] += measure * middle[field::stick];
-      for (const auto &[at, weight] : {std::pair{&first, 1.0}, {&last, 1.0}, {&middle, 4.0}})
-        sums[3] += measure * weight / 6 * (*at)[field::stick] * (*at)[field::x] * (*at)[field::y];
-    }
-    return sums;
-  };
+TEST(ContactSurface, HasTheAreasOfItsNodes) {
   const FrictionBound bound{0.5};
-  const auto [whole, contact, stick, moment] = areas(
-      contact_lines(squares([](double x, double) {
-                      return x < 0.8 ? std::array{2.0, x < 0.3 ? 0.4 : 1.0} : std::array{0.0, 0.0};
-                    }),
-                    bound, 0));
-  EXPECT_NEAR(whole, 1, 1e-14);
-  EXPECT_NEAR(contact, 0.875, 1e-14);
-  EXPECT_NEAR(stick, 0.375, 1e-14);
-  EXPECT_NEAR(moment, 0.375 * 0.375 / 4, 1e-14);
+  const auto in_contact = [](const double *at) { return at[field::contact]; };
+  const auto sticking = [](const double *at) { return at[field::stick]; };
+  const ContactSurface surface(
+      squares([](double x, double) {
+        return x < 0.8 ? std::array{2.0, x < 0.3 ? 0.4 : 1.0} : std::array{0.0, 0.0};
+      }),
+      bound, 0);
+  EXPECT_NEAR(over(surface, one), 1, 1e-14);
+  EXPECT_NEAR(over(surface, in_contact), 0.875, 1e-14);
+  EXPECT_NEAR(over(surface, sticking), 0.375, 1e-14);
+  EXPECT_NEAR(over(surface,
+                   [](const double *at) { return at[field::stick] * at[field::x] * at[field::y]; }),
+              0.375 * 0.375 / 4, 1e-14);
   // A single node has a quarter of its triangles, one that is out leaves the rest of them.
-  const auto [all, of_one, of_others, ignored] =
-      areas(contact_lines(squares([](double x, double y) {
-                            const bool one = x == 0.5 && y == 0.5;
-                            return std::array{2.0, one ? 0.4 : 1.0};
-                          }),
-                          bound, 0));
-  EXPECT_NEAR(of_others, 6 * 0.25 / 32, 1e-14);
-  EXPECT_NEAR(of_one, 1, 1e-14);
+  const ContactSurface others(squares([](double x, double y) {
+                                return std::array{2.0, x == 0.5 && y == 0.5 ? 0.4 : 1.0};
+                              }),
+                              bound, 0);
+  EXPECT_NEAR(over(others, sticking), 6 * 0.25 / 32, 1e-14);
+  EXPECT_NEAR(over(others, in_contact), 1, 1e-14);
+}
+
+/// Straight conditions askew to the triangles cut them exactly, and a traction is squared as it is.
+TEST(ContactSurface, IsCutWhereAConditionSays) {
+  const ContactSurface surface(squares([](double x, double y) {
+                                 return std::array{2.0, 0.2 * (x + y)};
+                               }),
+                               {0.5}, 0);
+  for (const double place : {0.31, 0.7, 1.2}) {
+    const double corner = std::max(0.0, place - 1);
+    EXPECT_NEAR(
+        over(surface, one, [&](const double *at) { return at[field::x] + at[field::y] < place; }),
+        place * place / 2 - corner * corner, 1e-10);
+    EXPECT_NEAR(over(surface, one,
+                     [&](const double *at) { return 3 * at[field::x] - at[field::y] > place; }),
+                1 - (place + 0.5) / 3, 1e-10);
+  }
+  EXPECT_NEAR(
+      over(surface, [](const double *at) { return at[field::tangential] * at[field::tangential]; }),
+      0.04 * (2.0 / 3 + 0.5), 1e-14);
 }
 
 } // namespace

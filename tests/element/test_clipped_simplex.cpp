@@ -1,5 +1,5 @@
 // The part of a simplex on which a condition holds.
-#include "../../src/element/clipped_simplex.hpp"
+#include "rbvi/element/clipped_simplex.hpp"
 
 #include <gtest/gtest.h>
 

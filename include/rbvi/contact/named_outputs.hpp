@@ -44,8 +44,8 @@ void add_gap_error(const Scene &scene, const Contact &contact, const FullMu &mu,
                    const std::function<Vector(std::size_t i)> &of_interface, const Vector &lambda,
                    Outputs &outputs);
 
-/// The boundary of a contact interface as straight lines for integrals over it, in space lines
-/// across its triangles. They are cut where contact and stick end, and where the tangential stress
+/// The boundary of a contact interface in the plane as straight lines for integrals over it. They
+/// are cut where contact and stick end, and where the tangential stress
 /// and the slip change their sign, so that their magnitudes are as smooth. Fields at both ends of a
 /// line and at its middle, between which they are of degree 2.
 struct ContactLine {
@@ -61,9 +61,7 @@ struct ContactLine {
 /// at most `least` is out of contact. Contact and stick end inside an edge where way_into_edge says
 /// (contact_area.hpp); of pressures that are constant on edges they are of whole edges, and by
 /// Nitsche's method they end where P_n, or what |P_tau| is below its bound, is zero, linear between
-/// the vertices. Of triangles they end in the middle of edges from a vertex that is in to one that
-/// is out, straight between these, and lines without a measure lie along the edges, where extrema
-/// are.
+/// the vertices.
 std::vector<ContactLine> contact_lines(const Grid &grid, const FrictionBound &bound, double least);
 
 } // namespace rbvi

@@ -5,8 +5,8 @@
 //   eta)
 //
 // and the energy of u is that of w under this load, and a(l, l) / 2 - f(l) - f(motion). Loads and
-// energy are sums of forms like those of a scene: exact where a and the imposed values are, else separated
-// by empirical interpolation. Their kernels read Cell::imposed_by.
+// energy are sums of forms like those of a scene: exact where a and the imposed values are, else
+// separated by empirical interpolation. Their kernels read Cell::imposed_by.
 #pragma once
 
 #include "rbvi/core/dense.hpp"

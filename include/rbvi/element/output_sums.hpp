@@ -57,6 +57,7 @@ public:
                });
   }
   bool is_conditional() const { return form_.conditional; }
+  int images() const { return image_count(mirrors_); }
   /// Whether the condition holds at the image of these fields.
   bool holds(int image, OutputFields fields) const {
     reflect(mirrors_, image, fields);

@@ -1,7 +1,7 @@
 // The lines that a simplex is summed along.
 #pragma once
 
-#include "clipped_simplex.hpp"
+#include "rbvi/element/clipped_simplex.hpp"
 #include "rbvi/element/output_sums.hpp"
 
 namespace rbvi {
@@ -36,5 +36,31 @@ private:
   double size_;
   const std::array<OutputLines::Place, 3> &places_;
 };
+
+/// Adds a simplex of this measure to an output: of a triangle and a tetrahedron the parts where the
+/// condition of the output holds. `fields`: at barycentric coordinates; `weight(fields)`: of its
+/// measure there.
+template <class Fields, class Weight>
+void add_simplex(int dim, double size, const Fields &fields, const Weight &weight,
+                 OutputLines &lines) {
+  const auto weight_of = [&](const SimplexLines &own) {
+    return [&](std::size_t line, const OutputFields &at) { return own.measure(line) * weight(at); };
+  };
+  if (dim == 1 || !lines.is_conditional()) {
+    const SimplexLines own(dim, size, lines);
+    return lines.add(
+        own.count(), [&](std::size_t line, double s) { return fields(own.at(line, s)); },
+        weight_of(own));
+  }
+  for (int image = 0; image < lines.images(); ++image)
+    for (const Piece &piece :
+         pieces_where(dim, [&](const Barycentric &at) { return lines.holds(image, fields(at)); })) {
+      const SimplexLines own(dim, size * piece.share(), lines);
+      lines.add_whole(
+          image, own.count(),
+          [&](std::size_t line, double s) { return fields(piece.at(own.at(line, s))); },
+          weight_of(own));
+    }
+}
 
 } // namespace rbvi
