@@ -299,27 +299,44 @@ void read_load(Reader &reader, const CaseNode &node, Scene &scene) {
   count_once(regions_in(node), first, scene.f);
 }
 
-/// The term c u v: exact where the domain does not move and c separates.
+/// Throws bad_input for a negative coefficient, with which a membrane may have no energy that is
+/// least.
+double checked_zeroth(double c, const std::string &where) {
+  if (!(c >= 0))
+    throw bad_input("zeroth: c of the term c u is " + short_number(c) + where +
+                    ": it must not be negative");
+  return c;
+}
+
+std::function<PointValue> checked_zeroth(std::function<PointValue> c) {
+  return [c = std::move(c)](const FullMu &mu, const Point &x) {
+    return checked_zeroth(c(mu, x), " at (" + short_number(x[0]) + ", " + short_number(x[1]) + ")");
+  };
+}
+
+/// The term c u v: exact where the domain does not move and c is one product of factors and of a
+/// function of the point.
 void read_zeroth(Reader &reader, const CaseNode &node, Scene &scene) {
   if (scene.components != 1) throw bad_input("'zeroth' is of a membrane");
   const Expression c = expression_in(reader, node);
   const auto constant = expanded(c, reader.lets).constant();
-  if (constant && *constant < 0) throw bad_input("c of the term c u is not negative");
-  if (constant && *constant == 0) return;
+  if (constant && checked_zeroth(*constant, "") == 0) return;
   const auto form = [&](const Expression &of) {
-    return weighted_product("", point_value_of(formula_of(reader, {of})), scene.degree);
+    return weighted_product("", checked_zeroth(point_value_of(formula_of(reader, {of}))),
+                            scene.degree);
   };
   const auto products = map_of(reader).empty() ? products_of(reader, c) : std::nullopt;
-  Sum terms;
-  if (products)
-    for (const Product &product : *products)
-      terms.push_back(exact_term(form(product.at_point), product.factors));
-  else
-    terms = {mapped_term(form(c), mapped_dependence(reader, formula_of(reader, {c})))};
-  for (Term &term : terms) {
-    term.of_order_zero = true;
-    scene.a.push_back(std::move(term));
+  Term term = mapped_term(form(c), mapped_dependence(reader, formula_of(reader, {c})));
+  if (products && products->size() == 1) {
+    auto [factors, at_point] = products->front();
+    for (Factor &factor : factors)
+      factor.value = [value = factor.value, name = factor.name](const FullMu &mu) {
+        return checked_zeroth(value(mu), " where " + name + " is that");
+      };
+    term = exact_term(form(at_point), factors);
   }
+  term.of_order_zero = true;
+  scene.a.push_back(std::move(term));
 }
 
 } // namespace

@@ -24,9 +24,21 @@ void add_bounds(const ContactInterface &interface, const FullMu &mu,
       const int dof = mesh.dofs[2 * node];
       if (dof < 0 || mesh.dofs[2 * node + 1] < 0) continue;
       const PointConstraint at = interface.constraint_at(mu, mesh.points[node]);
-      bounds[dof] = {dof, at.direction, at.gap};
+      bounds[dof] = {{dof, dof + 1}, Vector{{at.direction[0], at.direction[1]}}, at.gap};
     }
   }
+}
+
+/// Orthonormal columns, the normal first; in the plane then the tangent, a quarter of a turn on.
+Matrix frame_of(const Vector &normal) {
+  if (normal.size() == 2) return Matrix{{normal[0], -normal[1]}, {normal[1], normal[0]}};
+  // The reflection that takes the first axis to the normal, or to its opposite.
+  Vector v = normal;
+  v[0] += normal[0] < 0 ? -1 : 1;
+  Matrix frame =
+      2 / v.squaredNorm() * v * v.transpose() - Matrix::Identity(normal.size(), normal.size());
+  if (normal[0] < 0) frame = -frame;
+  return frame;
 }
 
 } // namespace
@@ -53,8 +65,8 @@ LocalFrames::LocalFrames(const Problem &problem) : row_of_(problem.trace().size,
   for (std::size_t k = 0; k < trace.index.size(); ++k)
     row_of_[trace.index[k]] = dofs.first_free + trace.local_row[k];
   const auto local = static_cast<PetscInt>(dofs.natural_owned.size());
-  RBVI_CALL(MatCreateAIJ(problem.comm(), local, local, PETSC_DETERMINE, PETSC_DETERMINE, 2, nullptr,
-                         1, nullptr, q_.put()));
+  RBVI_CALL(MatCreateAIJ(problem.comm(), local, local, PETSC_DETERMINE, PETSC_DETERMINE, 3, nullptr,
+                         2, nullptr, q_.put()));
 }
 
 void LocalFrames::set(std::vector<NodalBound> bounds) {
@@ -64,12 +76,15 @@ void LocalFrames::set(std::vector<NodalBound> bounds) {
   for (PetscInt row = first; row < last; ++row)
     RBVI_CALL(MatSetValue(q_.get(), row, row, 1, INSERT_VALUES));
   for (const NodalBound &bound : bounds_) {
-    const PetscInt row = row_of_[bound.contact_dof];
-    if (row < 0) continue;
-    const Point &n = bound.normal;
-    const std::array<PetscInt, 2> rows{row, row + 1};
-    const std::array<double, 4> frame{n[0], -n[1], n[1], n[0]}; // (n, tau)
-    RBVI_CALL(MatSetValues(q_.get(), 2, rows.data(), 2, rows.data(), frame.data(), INSERT_VALUES));
+    std::vector<PetscInt> rows;
+    for (const Index dof : bound.contact_dofs)
+      rows.push_back(row_of_[dof]);
+    if (rows.front() < 0) continue;
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> frame =
+        frame_of(bound.normal);
+    const auto size = static_cast<PetscInt>(rows.size());
+    RBVI_CALL(
+        MatSetValues(q_.get(), size, rows.data(), size, rows.data(), frame.data(), INSERT_VALUES));
   }
   RBVI_CALL(MatAssemblyBegin(q_.get(), MAT_FINAL_ASSEMBLY));
   RBVI_CALL(MatAssemblyEnd(q_.get(), MAT_FINAL_ASSEMBLY));
@@ -100,7 +115,7 @@ Handle<Vec> LocalFrames::upper() const {
   RBVI_CALL(MatCreateVecs(q_.get(), result.put(), nullptr));
   RBVI_CALL(VecSet(result.get(), PETSC_INFINITY));
   for (const NodalBound &bound : bounds_)
-    if (const PetscInt row = row_of_[bound.contact_dof]; row >= 0)
+    if (const PetscInt row = row_of_[bound.contact_dofs.front()]; row >= 0)
       RBVI_CALL(VecSetValue(result.get(), row, bound.gap, INSERT_VALUES));
   RBVI_CALL(VecAssemblyBegin(result.get()));
   RBVI_CALL(VecAssemblyEnd(result.get()));

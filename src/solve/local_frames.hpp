@@ -1,6 +1,5 @@
-// Displacements of the nodes of a contact curve by their components along the normal and the
-// tangent, u = Q v, so that a bound on the normal displacement is a bound on a single unknown. Two
-// dimensions.
+// Displacements of the nodes of a contact boundary by their components along the normal and the
+// tangents, u = Q v, so that a bound on the normal displacement is a bound on a single unknown.
 #pragma once
 
 #include "rbvi/fem/problem.hpp"
@@ -9,13 +8,13 @@ namespace rbvi {
 
 /// normal . u <= gap at one node.
 struct NodalBound {
-  Index contact_dof; ///< of its first component; the second follows
-  Point normal;      ///< of length 1
+  std::vector<Index> contact_dofs; ///< of the components that nothing fixes
+  Vector normal;                   ///< these components, of length 1
   double gap;
 };
 
-/// At all nodes, middles too, of the boundaries of interfaces of cells beside them, but for those
-/// that are fixed in some direction. Throws bad_input for a node of two boundaries.
+/// In the plane at all nodes, middles too, of the boundaries of interfaces of cells beside them,
+/// but for those that are fixed in some direction. Throws bad_input for a node of two boundaries.
 std::vector<NodalBound> bounds_along(const Contact &contact, const FullMu &mu);
 
 class LocalFrames {

@@ -17,14 +17,14 @@ namespace {
 
 /// Functionals of u become those of v, u = Q v in the frames of these bounds.
 void turn(const std::vector<NodalBound> &bounds, std::vector<NitscheFace> &faces) {
-  std::map<Index, const Point *> normal_of;
+  std::map<Index, const Vector *> normal_of;
   for (const NodalBound &bound : bounds)
-    normal_of[bound.contact_dof] = &bound.normal;
+    normal_of[bound.contact_dofs.front()] = &bound.normal;
   for (NitscheFace &face : faces)
     for (std::size_t i = 0; i < 12; i += 2) {
       const auto found = normal_of.find(face.dofs[i]);
       if (found == normal_of.end()) continue;
-      const Point &n = *found->second;
+      const Vector &n = *found->second;
       for (NitschePoint &point : face.points)
         for (NitschePoint::Row *row : {&point.sigma_n, &point.sigma_tau, &point.n, &point.tau}) {
           auto pair = row->segment<2>(static_cast<Index>(i));

@@ -49,7 +49,8 @@ PetscErrorCode energy(SNES, Vec u, PetscReal *value, void *context) {
   PetscFunctionReturn(0);
 }
 
-/// Of this rank's nodes in two dimensions: row i of b bounds one, b_i / |b_i| is a normal there.
+/// Of this rank's nodes, where displacements are vectors: row i of b bounds one, b_i / |b_i| is a
+/// normal there.
 std::vector<NodalBound> nodal_bounds(const Contact &contact, const DualLayout &layout,
                                      const Operators &op) {
   std::vector<NodalBound> bounds;
@@ -59,10 +60,19 @@ std::vector<NodalBound> nodal_bounds(const Contact &contact, const DualLayout &l
     for (std::size_t i = 0; i < interface.dual().vertices.size(); ++i, ++row) {
       if (!layout.own[k][i]) continue;
       const Index node = interface.dual().vertices[i];
-      const Index dof = interface.mesh().dofs[2 * node];
-      const Point direction{op.b.coeff(row, dof), op.b.coeff(row, dof + 1), 0};
-      const double size = std::hypot(direction[0], direction[1]);
-      bounds.push_back({dof, {direction[0] / size, direction[1] / size, 0}, op.g[row] / size});
+      NodalBound bound{{}, Vector(interface.mesh().components), op.g[row]};
+      Index free = 0;
+      for (Index c = 0; c < bound.normal.size(); ++c)
+        if (const Index dof = interface.mesh().dofs[bound.normal.size() * node + c]; dof >= 0) {
+          bound.contact_dofs.push_back(dof);
+          bound.normal[free++] = op.b.coeff(row, dof);
+        }
+      bound.normal.conservativeResize(free);
+      const double size = bound.normal.norm();
+      if (!(size > 0)) continue;
+      bound.normal /= size;
+      bound.gap /= size;
+      bounds.push_back(std::move(bound));
     }
   }
   return bounds;

@@ -247,6 +247,28 @@ TEST(Solids, AnswersDoNotDependOnRanks) {
   EXPECT_LE((world.lambda - alone.lambda).norm(), 1e-9 * alone.lambda.norm());
 }
 
+/// SNES bounds single unknowns, in frames of the normals, of nodes on a fixed side with two
+/// components or one.
+TEST(Solids, BoundsOnSingleUnknownsFindTheSame) {
+  const TemporaryFile mesh(cube_mesh(5, 0.1));
+  const Scene scene =
+      scene_of("parameters: {push: {range: [0, 1], default: 0.05}}\n"
+               "materials: {rubber: {at: all, E: 15, nu: 0.3}}\n"
+               "imposed: {top: {at: z1, ux: 0, uy: 0, uz: -push}, left: {at: x0, ux: 0}, "
+               "front: {at: y0, uy: 0}}\n"
+               "contact: {foot: {at: z0, lumped: yes, against: {sphere: {center: [0.1, 0.2, -1], "
+               "radius: 1}}}}\nsmall: yes\n",
+               1);
+  Problem problem(PETSC_COMM_WORLD, scene, {mesh.name()});
+  HfOptions vi;
+  vi.method = HfMethod::vi;
+  const HfSolution bounded = HighFidelity(problem, vi).solve({0.12}),
+                   found = HighFidelity(problem, {}).solve({0.12});
+  EXPECT_GT(*found.outputs.contact_nodes, 4);
+  EXPECT_LE((bounded.u - found.u).norm(), 1e-10 * found.u.norm());
+  EXPECT_LE((bounded.lambda - found.lambda).norm(), 1e-9 * found.lambda.norm());
+}
+
 /// A sweep with one factorisation finds what single solves do.
 TEST(Solids, ASweepOfSizesHasTheAnswersOfSingleSolves) {
   const TemporaryFile mesh(cube_mesh(5, 0.1));
