@@ -180,8 +180,8 @@ SurfaceSupport::Frames SurfaceSupport::frames_at(const FullMu &mu, const Cell &f
 }
 
 void SurfaceSupport::integrate(const FullMu &mu, const Cell &facet, EntityValues &values) const {
-  const bool friction = values.b.rows() > static_cast<Index>(corners) &&
-                        (values.b.cols() > 0 || scene_.motion);
+  const bool friction =
+      values.b.rows() > static_cast<Index>(corners) && (values.b.cols() > 0 || scene_.motion);
   const Frames frames = friction ? frames_at(mu, facet) : Frames{};
   values.b.setZero();
   values.g.setZero();

@@ -128,9 +128,7 @@ Solved System::step_nearby(const LazyColumns &h, const Vector &q, const NodeLaws
   for (Index j = 0; j < a; ++j)
     u[added[j]] = unit[j] * border[j];
   if (!u.allFinite()) return Solved::far;
-  Vector x = expand(laws, to, list, u, std::move(point.x));
-  bring_to_circles(laws, to, x);
-  point = evaluate(h, q, std::move(x));
+  point = evaluate(h, q, on_circles(laws, to, expand(laws, to, list, u, std::move(point.x))));
   return Solved::yes;
 }
 

@@ -152,13 +152,14 @@ Vector expand(const NodeLaws &laws, const ActiveSets &sets, const std::vector<Un
   return x;
 }
 
-void bring_to_circles(const NodeLaws &laws, const ActiveSets &sets, Vector &x) {
+Vector on_circles(const NodeLaws &laws, const ActiveSets &sets, Vector x) {
   for (Index i = 0; laws.tangents == 2 && i < laws.nodes(); ++i) {
     if (sets.tangent_at(i) != Tangent::slip) continue;
     auto tangential = x.segment(laws.tangent[i], 2);
     const double bound = laws.bound[i].value(x[laws.normal[i]]);
     if (bound > 0 && tangential.norm() > 0) tangential *= bound / tangential.norm();
   }
+  return x;
 }
 
 double unit_of(const Unknown &unknown, const Vector &diagonal, const NodeLaws &laws) {
@@ -253,9 +254,7 @@ Solved System::step(const LazyColumns &h, const Vector &q, const NodeLaws &laws,
     if (x[j] != 0) start += x[j] * h.column(j);
   const Vector u = solve(right_side(start), refinements);
   if (!u.allFinite()) return symmetric_ ? Solved::indefinite : Solved::singular;
-  x = expand(laws, sets_, list_, u, std::move(x));
-  bring_to_circles(laws, sets_, x);
-  point = evaluate(h, q, std::move(x));
+  point = evaluate(h, q, on_circles(laws, sets_, expand(laws, sets_, list_, u, std::move(x))));
   point.negative = negative_;
   return Solved::yes;
 }
@@ -273,8 +272,7 @@ State System::near(const LazyColumns &h, const Vector &x, const NodeLaws &laws, 
   const Vector q = left - (evaluate(h, Vector::Zero(x.size()), x).w);
   const Vector right = right_side(evaluate(h, q, moved).w);
   moved = expand(other_laws, sets_, list_, solve(right, 1), std::move(moved));
-  bring_to_circles(other_laws, sets_, moved);
-  return evaluate(h, q, std::move(moved));
+  return evaluate(h, q, on_circles(other_laws, sets_, std::move(moved)));
 }
 
 Matrix System::change(const NodeLaws &laws, const Matrix &of_q) const {

@@ -104,8 +104,8 @@ Vector fixed_part(const NodeLaws &laws, const ActiveSets &sets);
 /// x of the unknowns u, beside its fixed part `x`.
 Vector expand(const NodeLaws &laws, const ActiveSets &sets, const std::vector<Unknown> &list,
               const Vector &u, Vector x);
-/// The tractions of nodes that slip become as long as their bounds, which turns them.
-void bring_to_circles(const NodeLaws &laws, const ActiveSets &sets, Vector &x);
+/// With tractions of nodes that slip as long as their bounds, which turns them.
+Vector on_circles(const NodeLaws &laws, const ActiveSets &sets, Vector x);
 
 /// With friction a singular matrix need not be a fault of H.
 enum class Solved { yes, singular, indefinite, far };

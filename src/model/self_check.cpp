@@ -105,7 +105,8 @@ void print_self_check(std::ostream &out, const SelfCheck &check, const Parameter
     out << "  bodies penetrate, or friction exceeds its bound, by more than 2 % of these scales: "
            "where rbvi solve does not leave that, too, the model does not know what happens: "
            "reduce "
-           "again with more training parameters; where it does, refine the mesh\n";
+           "again with more training parameters, or a smaller -eim_tolerance where operators are "
+           "interpolated; where it does, refine the mesh\n";
 }
 
 } // namespace rbvi

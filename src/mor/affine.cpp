@@ -270,6 +270,12 @@ std::vector<int> interpolated_samples(const Sum &sum, const ParameterSpace &spac
   return result;
 }
 
+EimOptions eim_of_body(const Scene &scene, EimOptions options) {
+  constexpr double of_rest = 1e-6;
+  if (scene.components > 1) options.tolerance *= of_rest;
+  return options;
+}
+
 std::vector<RowsOfB> rows_of_b(const AffineOperators &affine, const Problem &problem) {
   const Index dual = problem.dual_size();
   if (affine.b_tangential.size() == 0) return {{affine.b, 0, dual}};
@@ -327,9 +333,10 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
   }
 
   AffineOperators result;
-  result.a = a.separate(problem.comm(), options);
+  const EimOptions of_body = eim_of_body(scene, options);
+  result.a = a.separate(problem.comm(), of_body);
   separate_rows(b, problem.contact().nodes(), problem.dual_size(), options, apart, result);
-  result.f = f.separate(problem.comm(), options);
+  result.f = f.separate(problem.comm(), of_body);
   result.g = g.separate(MPI_COMM_SELF, options);
   result.sample_a = {sample_domain(problem, scene.a, a_terms.split.mapped, result.a.entries, true)};
   result.sample_f = {

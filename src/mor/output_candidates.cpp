@@ -10,6 +10,14 @@ namespace rbvi {
 
 namespace {
 
+/// Whether samples tell where it is: parameters do not move it over the body.
+bool is_known_by_samples(const Scene &scene, const OutputForm &form) {
+  return is_extreme(form) && std::ranges::none_of(form.moved_by, [&](int parameter) {
+           return std::ranges::find(scene.parameters.free, parameter) !=
+                  scene.parameters.free.end();
+         });
+}
+
 /// The displacement at the nodes of the cells.
 Vector at_nodes(const Vector &u, const OutputCells &cells, Index components) {
   Vector result(std::ssize(cells.nodes) * components);
@@ -52,7 +60,7 @@ void mark_at(const Scene &scene, const FullMu &mu, const OutputCells &cells, con
   const Vector own = at_nodes(u, cells, scene.components);
   for (int output = 0; output < std::ssize(scene.outputs); ++output) {
     const OutputForm &form = scene.outputs[output];
-    if (!is_extreme(form)) continue;
+    if (!is_known_by_samples(scene, form)) continue;
     const auto first =
         std::ranges::lower_bound(cells.parts, output, {}, &OutputCells::Part::output);
     mark(extremes_of_parts(scene, output, mu, cells, own), form.kind == OutputForm::Kind::max,
@@ -66,7 +74,7 @@ OutputCells candidate_cells(MPI_Comm comm, const Scene &scene, const OutputCells
                             const std::vector<Sample> &samples) {
   std::vector<int> keeps;
   for (const OutputCells::Part &part : cells.parts)
-    keeps.push_back(!is_extreme(scene.outputs[part.output]));
+    keeps.push_back(!is_known_by_samples(scene, scene.outputs[part.output]));
   if (std::ranges::all_of(keeps, [](int keep) { return keep != 0; })) return cells;
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);

@@ -32,8 +32,10 @@ std::string terms(const char *name, const Eim &eim) {
 }
 
 /// "to 0.0001", and the tolerances of B^n and B^tau where they have their own.
-std::string interpolation_tolerance(const ReduceOptions &options) {
+std::string interpolation_tolerance(const Scene &scene, const ReduceOptions &options) {
   std::string text = "to " + short_number(options.eim.tolerance);
+  const double of_body = eim_of_body(scene, options.eim).tolerance;
+  if (of_body != options.eim.tolerance) text += ", A and F to " + short_number(of_body);
   if (options.eim_normal) text += ", B^n to " + short_number(*options.eim_normal);
   if (options.eim_tangential) text += ", B^tau to " + short_number(*options.eim_tangential);
   return text;
@@ -76,7 +78,7 @@ StageRow interpolation_row(const Scene &scene, const ReduceOptions &options,
   if (!apart) names.push_back(made == nullptr ? "B" : terms_of_b(made->affine));
   if (f) add("F", &AffineOperators::f);
   if (separable_gap(scene)) add("G", &AffineOperators::g);
-  const std::string tolerance = interpolation_tolerance(options);
+  const std::string tolerance = interpolation_tolerance(scene, options);
   return {stage::interpolation,
           exact + (made == nullptr ? "" : "terms: ") + joined(names) +
               (made == nullptr ? " " + tolerance + "; a sum of few terms ends there"

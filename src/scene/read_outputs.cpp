@@ -133,10 +133,14 @@ void put_values(Reader &reader, const CaseNode &node, const CaseNode &value, con
   for (const CaseNode *given : {&value, where})
     if (given != nullptr) check_fields(reader, scene, form, expression_in(reader, *given));
   form.conditional = measures || where != nullptr;
-  form.values = field_values_of(
+  const Formula formula =
       formula_of(reader, {measures ? one : of, measures           ? of
                                                : where != nullptr ? expression_in(reader, *where)
-                                                                  : one}));
+                                                                  : one});
+  form.values = field_values_of(formula);
+  form.moved_by = form.conditional ? dependence_of_map(reader) : std::vector<int>{};
+  const std::vector<int> own = dependence_of(formula);
+  form.moved_by.insert(form.moved_by.end(), own.begin(), own.end());
 }
 
 void put_reaction(const Reader &reader, const CaseNode &node, const Scene &scene,

@@ -170,13 +170,19 @@ void check_written(const ReducedModel &model, const std::filesystem::path &file,
     throw failure("the model in " + file.string() + " is not the one that was made: " + reason);
 }
 
-/// That nobody knows the errors of a new model; and where it has so few samples that it cannot even
-/// follow a linear function of the parameters.
+/// That nobody knows the errors of a new model; where it has so few samples that it cannot even
+/// follow a linear function of the parameters; and which of them no sample varies.
 void tell_of_errors(const ReducedModel &model, const std::filesystem::path &run) {
   std::printf("Its errors are not measured: rbvi verify -out %s compares it with high-fidelity "
               "answers\n",
               run.c_str());
   const std::vector<Mu> trained = from_columns(model.made.trained_mu);
+  for (int i = 0; i < model.scene.parameters.size() && trained.size() > 1; ++i)
+    if (std::ranges::all_of(trained, [&](const Mu &mu) { return mu[i] == trained.front()[i]; }))
+      std::printf(
+          "warning: all samples have one %s, and the model knows nothing of others: vary it "
+          "in -train, or give it that value (-%s VALUE)\n",
+          model.scene.parameters.at(i).name.c_str(), model.scene.parameters.at(i).name.c_str());
   const auto distinct = std::ssize(std::set<Mu>(trained.begin(), trained.end()));
   if (distinct > model.scene.parameters.size()) return;
   std::printf(

@@ -117,8 +117,10 @@ std::vector<Option> of_stability(const Scene &scene, ReduceOptions &o) {
 
 std::vector<Option> of_separation(ReduceOptions &o) {
   return {
-      kept(number("eim_tolerance", relative_error, o.eim.tolerance,
-                  "relative error that the separated operators may have (B.32)")),
+      kept(number(
+          "eim_tolerance", relative_error, o.eim.tolerance,
+          "relative error that the separated operators may have (B.32); of an elastic body A "
+          "and F a millionth of it, as bending is a small rest of large entries")),
       number("eim_max_size", basis_size, o.eim.max_size, "largest number of terms; 0: no limit"),
       otherwise("-eim_tolerance",
                 kept(use::collocated,

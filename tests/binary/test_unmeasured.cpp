@@ -35,6 +35,14 @@ TEST_F(Unmeasured, AModelOfOneSampleSaysThatNobodyKnowsItsErrors) {
   }
 }
 
+TEST_F(Unmeasured, AParameterThatNoSampleVariesIsTold) {
+  spill("line.csv", "radius,indentation\n0.8,0.02\n0.8,0.03\n0.8,0.04\n");
+  const std::string out =
+      output_of(rbvi(1, "offline -case disk.yaml -train line.csv -out run_line"));
+  EXPECT_TRUE(contains(out, "warning: all samples have one radius")) << out;
+  EXPECT_FALSE(contains(out, "one indentation")) << out;
+}
+
 TEST_F(Unmeasured, VerifyMeasuresTheBoundaryOfTheBoxAsWell) {
   output_of(rbvi(2, "offline -case disk.yaml -train grid:4,4 -out run"));
   const std::string out = verified();

@@ -141,8 +141,10 @@ TEST(Zeroth, IsRefusedWhereItMakesNoSense) {
                                          "contact: {on: {at: obstacle, above: 0}}\n";
   EXPECT_THROW(scene_of(rest + "zeroth: -1\n"), Error);
   for (const char *negative : {"x < 0 ? -30 : 1", "p - 3", "1 + p - 9*x"}) {
-    Problem problem(PETSC_COMM_WORLD, scene_of(rest + "zeroth: '" + negative + "'\n"), {});
-    EXPECT_THROW(problem.assemble({1}), Error) << negative;
+    const auto assembled = [&] {
+      Problem(PETSC_COMM_WORLD, scene_of(rest + "zeroth: '" + negative + "'\n"), {}).assemble({1});
+    };
+    EXPECT_THROW(assembled(), Error) << negative;
   }
   EXPECT_THROW(scene_of(square("1") + "parameters: {p: {range: [1, 2], default: 1}}\n"
                                       "contact: {on: {at: obstacle, above: 0, below: 1}}\n"),

@@ -54,6 +54,19 @@ TEST(OutputCandidates, LeaveOtherOutputsTheirCells) {
             mean.output_cells().parts.size());
 }
 
+/// Parameters move a window, or a weight, past cells that no sample has it at.
+TEST(OutputCandidates, KeepAllThatAParameterMovesOver) {
+  const Problem problem(PETSC_COMM_WORLD,
+                        pressed(hold,
+                                "  window: {max: von_mises, in: all, where: 'x < d'}\n"
+                                "  weighted: {min: sigma_yy*(1 + d*x), in: all}\n",
+                                "plane_strain"),
+                        {});
+  EXPECT_EQ(
+      candidate_cells(PETSC_COMM_WORLD, problem.scene(), problem.output_cells(), {}).parts.size(),
+      problem.output_cells().parts.size());
+}
+
 /// Its condition holds at no sample, and may elsewhere.
 TEST(OutputCandidates, KeepAllWhereNoSampleHasAValue) {
   Problem problem(

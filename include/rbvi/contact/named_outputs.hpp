@@ -8,6 +8,7 @@
 
 #include "rbvi/contact/contact.hpp"
 #include "rbvi/element/output_cells.hpp"
+#include "rbvi/element/output_sums.hpp"
 
 #include <map>
 
@@ -63,5 +64,7 @@ struct ContactLine {
 /// Nitsche's method they end where P_n, or what |P_tau| is below its bound, is zero, linear between
 /// the vertices.
 std::vector<ContactLine> contact_lines(const Grid &grid, const FrictionBound &bound, double least);
+/// Adds them to an output; `turned`: axisymmetric.
+void add_lines(const std::vector<ContactLine> &lines, bool turned, OutputLines &sums);
 
 } // namespace rbvi

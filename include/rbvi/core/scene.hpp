@@ -149,6 +149,9 @@ struct OutputForm {
   std::vector<std::string> at{}; ///< contacts, boundaries or regions; no region: the whole mesh
   std::function<FieldValues> values{}; ///< what is integrated, ..., and where
   bool conditional = false;            ///< it is not asked for everywhere
+  /// Parameters by which an extreme value and its condition move over the cells, as indices into
+  /// parameters.all.
+  std::vector<int> moved_by{};
   Point vector{}; ///< the point, or the direction of a reaction or of the axis of a moment
   std::vector<Mean> means{};                         ///< of a spring
   std::function<Coefficient> stiffness{}, preload{}; ///< of a spring; empty: 0
@@ -254,7 +257,8 @@ bool has_friction(const Scene &scene);
 /// Otherwise Nitsche's method does.
 bool has_multipliers(const Scene &scene);
 bool separable_contact(const Scene &scene);
-/// Whether G is a sum of few terms beside B. On surfaces it takes many, and is assembled for each mu.
+/// Whether G is a sum of few terms beside B. On surfaces it takes many, and is assembled for each
+/// mu.
 bool separable_gap(const Scene &scene);
 /// Whether some interface follows the state.
 bool follows_state(const Scene &scene);

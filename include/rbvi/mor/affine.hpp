@@ -39,11 +39,15 @@ std::vector<RowsOfB> rows_of_b(const AffineOperators &affine, const Problem &pro
 std::vector<int> interpolated_samples(const Sum &sum, const ParameterSpace &space,
                                       const std::vector<Mu> &set);
 
+/// Those of A and F: of an elastic body their tolerance is a millionth, as forces of bending, and
+/// of stretching around an axis, are what is left of sums of much larger entries.
+EimOptions eim_of_body(const Scene &scene, EimOptions options);
+
 /// Collective. Assembles the operators at every mu of `training` (of A and F the terms that are not
 /// exact, of A the lower triangle, at interpolated_samples()) and
-/// interpolates each. `apart`: of B in place of `options`, where there is one interface. B stays
-/// one where it is a multiple of one form at all `training`, since then one term serves all rows,
-/// and without friction, where there is only B^n.
+/// interpolates each (A and F as eim_of_body says). `apart`: of B in place of `options`, where
+/// there is one interface. B stays one where it is a multiple of one form at all `training`, since
+/// then one term serves all rows, and without friction, where there is only B^n.
 AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
                          const EimOptions &options, const std::optional<RowOptions> &apart = {});
 
