@@ -174,7 +174,9 @@ double over(const ContactSurface &surface, const std::function<double(const doub
       results[count + i] = condition == nullptr || condition(at.data()) ? 1 : 0;
     }
   };
-  OutputLines lines(form, {}, {});
+  const FullMu mu;
+  const MirrorPlanes mirrors;
+  OutputLines lines(form, mu, mirrors);
   surface.add_to(lines);
   return lines.sums().integral;
 }
