@@ -123,6 +123,14 @@ void put_place(const Reader &reader, const CaseNode &node, const Scene &scene, O
   }
 }
 
+/// Whether it names coordinates or normals, which the map moves over the cells.
+bool names_a_place(const Expression &value) {
+  return std::ranges::any_of(value.free_names(), [](const std::string &name) {
+    return name == "x" || name == "y" || name == "z" || name == "nx" || name == "ny" ||
+           name == "nz";
+  });
+}
+
 void put_values(Reader &reader, const CaseNode &node, const CaseNode &value, const Scene &scene,
                 OutputForm &form) {
   const CaseNode *where = node.find("where");
@@ -138,9 +146,12 @@ void put_values(Reader &reader, const CaseNode &node, const CaseNode &value, con
                                                : where != nullptr ? expression_in(reader, *where)
                                                                   : one});
   form.values = field_values_of(formula);
-  form.moved_by = form.conditional ? dependence_of_map(reader) : std::vector<int>{};
-  const std::vector<int> own = dependence_of(formula);
-  form.moved_by.insert(form.moved_by.end(), own.begin(), own.end());
+  form.moved_by = dependence_of(formula);
+  for (const CaseNode *given : {&value, where})
+    if (given != nullptr && names_a_place(expanded(expression_in(reader, *given), reader.lets))) {
+      const std::vector<int> of_map = dependence_of_map(reader);
+      form.moved_by.insert(form.moved_by.end(), of_map.begin(), of_map.end());
+    }
 }
 
 void put_reaction(const Reader &reader, const CaseNode &node, const Scene &scene,

@@ -67,6 +67,22 @@ TEST(OutputCandidates, KeepAllThatAParameterMovesOver) {
       problem.output_cells().parts.size());
 }
 
+/// So does the map, past what names a place and nothing else.
+TEST(OutputCandidates, KeepAllThatTheMapMovesOver) {
+  const auto kept_of = [](const std::string &output) {
+    Problem problem(PETSC_COMM_WORLD,
+                    pressed(hold, output, "plane_strain", "map: [x, (1 + d)*y]\n"), {});
+    const auto samples =
+        testing_reduced::solve_all(problem, parse_set(problem.scene().parameters, "random:2:3"));
+    const OutputCells all = problem.output_cells();
+    return std::ssize(candidate_cells(PETSC_COMM_WORLD, problem.scene(), all, samples).parts) ==
+           std::ssize(all.parts);
+  };
+  EXPECT_TRUE(kept_of("  weighted: {max: von_mises*exp(-9*y), in: all}\n"));
+  EXPECT_TRUE(kept_of("  window: {max: von_mises, in: all, where: y < 0.1}\n"));
+  EXPECT_FALSE(kept_of("  plain: {max: von_mises, in: all}\n"));
+}
+
 /// Its condition holds at no sample, and may elsewhere.
 TEST(OutputCandidates, KeepAllWhereNoSampleHasAValue) {
   Problem problem(
