@@ -3,8 +3,11 @@
 #include "rbvi/contact/history.hpp"
 #include "rbvi/contact/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <numeric>
 #include <optional>
 
@@ -249,6 +252,31 @@ NodeLaws laws_at(const Contact &contact, const FullMu &mu) {
     append(own, laws);
   }
   return laws;
+}
+
+std::string overdetermined(const Contact &contact) {
+  std::map<int, std::size_t> owner; // of a column of B, an interface with a multiplier there
+  std::map<std::array<std::size_t, 2>, int> shared;
+  for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
+    const InterfaceMesh &mesh = contact.interfaces[i]->mesh();
+    const DualSpace &dual = contact.interfaces[i]->dual();
+    for (const Index vertex : dual.vertices) {
+      const int column = mesh.dofs[vertex * mesh.components];
+      if (column < 0 || mesh.degree > 1) continue;
+      const std::size_t other = owner.try_emplace(column, i).first->second;
+      const bool friction =
+          dual.size() > dual.nodes() ||
+          contact.interfaces[other]->dual().size() > contact.interfaces[other]->dual().nodes();
+      if (other != i && friction) ++shared[{other, i}];
+    }
+  }
+  if (shared.empty()) return "";
+  const auto &[which, count] = *shared.begin();
+  return "the contacts " + contact.names[which[0]] + " and " + contact.names[which[1]] + " share " +
+         counted(count, "node") +
+         ", where friction on one and contact with the other may ask more than displacements of "
+         "degree 1 can meet: use degree: 2 (mesh), or end one of the boundaries a cell before the "
+         "other";
 }
 
 std::string failure_at(const Contact &contact, const FullMu &mu, const ContactOperators &operators,

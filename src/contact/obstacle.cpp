@@ -141,6 +141,7 @@ Grid ObstacleInterface::fields(const FullMu &mu, const Vector &u, const Vector &
             {},
             {}};
   add_gap(gap, std::vector<Point>(mesh_.points.size(), {0, 0, -obstacle_.side}), grid);
+  grid.of_nodes.push_back({"u", u, "m"});
   return grid;
 }
 

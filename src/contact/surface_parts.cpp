@@ -41,7 +41,16 @@ std::vector<ContactSurface::Part> parts_of(const VertexStates &holds) {
 }
 
 /// Rows of the values of all fields at nodes.
-enum : Index { point = 0, moved = 3, sheared = 6, slid = 9, pressed = 12, open = 13, rows = 14 };
+enum : Index {
+  point = 0,
+  moved = 3,
+  sheared = 6,
+  slid = 9,
+  pressed = 12,
+  open = 13,
+  raised = 14, ///< of a membrane
+  rows = 15
+};
 
 } // namespace
 
@@ -54,8 +63,10 @@ ContactSurface::ContactSurface(const Grid &grid, const FrictionBound &bound, dou
       values_.middleRows(first, components) =
           found->values.reshaped(components, grid.points.rows());
   };
-  values_.topRows(3) = grid.points.transpose();
-  set(moved, "u", 3);
+  const bool membrane = grid.points.cols() == 2;
+  values_.row(2).setZero();
+  values_.topRows(grid.points.cols()) = grid.points.transpose();
+  set(membrane ? raised : moved, "u", membrane ? 1 : 3);
   set(sheared, "tangential_stress", 3);
   set(slid, "slip", 3);
   set(pressed, "pressure", 1);
@@ -95,6 +106,7 @@ OutputFields ContactSurface::fields_at(const Part &part, const Barycentric &at) 
   fields.fill(none);
   std::copy_n(sum.data() + point, 3, fields.begin() + field::x);
   std::copy_n(sum.data() + moved, 3, fields.begin() + field::ux);
+  fields[field::u] = sum[raised];
   fields[field::pressure] = sum[pressed] - pull_;
   fields[field::gap] = sum[open];
   fields[field::slip] = sum.segment<3>(slid).norm();

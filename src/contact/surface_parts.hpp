@@ -1,4 +1,5 @@
-// Surfaces of contact in space, for outputs over them (contact/named_outputs.hpp).
+// Contact on triangles, surfaces in space and regions of a membrane, for outputs over them
+// (contact/named_outputs.hpp).
 #pragma once
 
 #include "rbvi/contact/contact.hpp"

@@ -11,9 +11,6 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/scene/stored_scene.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,8 +18,6 @@
 namespace rbvi {
 
 namespace {
-
-constexpr std::size_t most_told = 3; ///< bodies
 
 struct Bodies {
   const Mesh &mesh;
@@ -155,13 +150,14 @@ std::vector<Matrix> free_motions(const Grams &grams) {
   return free;
 }
 
-/// Takes from the free motions of all bodies together those that stretch a spring. Collective.
-void hold_by_couplings(const Bodies &bodies, std::vector<Matrix> &free) {
+/// Takes from the free motions of all bodies together those that stretch one of these springs.
+/// Collective.
+void hold_by_couplings(const Bodies &bodies, const std::vector<Coupling> &couplings,
+                       std::vector<Matrix> &free) {
   constexpr double stretched = 1e-6; // of the size of a motion
   std::vector<Index> first{0};
   for (const Matrix &motions : free)
     first.push_back(first.back() + motions.cols());
-  const std::vector<Coupling> &couplings = bodies.dofs.couplings;
   if (couplings.empty() || first.back() == 0) return;
   Matrix stretches = Matrix::Zero(std::ssize(couplings), first.back());
   for (Index k = 0; k < stretches.rows(); ++k) {
@@ -212,6 +208,34 @@ std::vector<std::string> names_of(const Bodies &bodies) {
                     vector_text(bodies.mesh.dim, bodies.all[body].low) + " and " +
                     vector_text(bodies.mesh.dim, bodies.all[body].high));
   return names;
+}
+
+/// Throws bad_input where only springs without stiffness somewhere in the box hold a motion.
+/// `free`: those that nothing but springs holds, `left`: those that no spring does. Collective.
+void check_lasting(const Scene &scene, const Bodies &bodies, std::vector<Matrix> free,
+                   const std::vector<Matrix> &left) {
+  const std::vector<Mu> box = corners_and_faces(scene.parameters);
+  std::vector<Coupling> lasting;
+  std::string lost;
+  auto coupling = bodies.dofs.couplings.begin(); // one for each spring, in their order
+  for (const Term &term : scene.a) {
+    if (term.form.means.empty()) continue;
+    const auto zero = std::ranges::find_if(box, [&](const Mu &mu) {
+      return !(coefficient_of(term, expand(scene.parameters, mu)) > 0);
+    });
+    if (zero == box.end())
+      lasting.push_back(*coupling);
+    else
+      lost = "the spring on " + boundaries_of(term.form.means) + " has no stiffness at " +
+             describe(scene.parameters, *zero);
+    ++coupling;
+  }
+  if (lost.empty()) return;
+  hold_by_couplings(bodies, lasting, free);
+  for (std::size_t body = 0; body < free.size(); ++body)
+    if (free[body].cols() > left[body].cols())
+      throw bad_input(lost + ", and nothing else holds " + names_of(bodies)[body] +
+                      ": let the stiffness stay above 0");
 }
 
 /// A node with springs: its free dofs and the motions there.
@@ -313,7 +337,9 @@ std::vector<FreeBody> free_bodies(const Scene &scene, const Mesh &mesh, const Do
   for (const Term &term : scene.a)
     if (term.form.means.empty()) add_energy(bodies, term, mu, mapped, grams);
   std::vector<Matrix> free = free_motions(grams);
-  hold_by_couplings(bodies, free);
+  const std::vector<Matrix> without_springs = free;
+  hold_by_couplings(bodies, dofs.couplings, free);
+  check_lasting(scene, bodies, without_springs, free);
   if (std::ranges::none_of(free, is_free)) return {};
   const std::vector<std::string> names = names_of(bodies);
   std::vector<FreeBody> result;
@@ -368,26 +394,6 @@ std::vector<Handle<Vec>> rigid_motions(const std::vector<FreeBody> &bodies, cons
     }
   }
   return result;
-}
-
-std::string describe(const std::vector<FreeBody> &bodies, int dim, const Matrix &motions) {
-  std::string text;
-  std::size_t told = 0;
-  Index first = 0;
-  for (const FreeBody &body : bodies) {
-    const Index count = body.motions.cols();
-    const Eigen::JacobiSVD<Matrix> svd(motions.middleRows(first, count), Eigen::ComputeThinU);
-    const Matrix own =
-        svd.matrixU().leftCols((svd.singularValues().array() > 1e-6 * motions.norm()).count());
-    first += count;
-    if (own.cols() == 0 || ++told > most_told) continue;
-    text.append(told == 1 ? "" : ", ")
-        .append(
-            body.name + " can " +
-            (body.turned ? "move along (0, 1)" : motions_text(dim, body.part, body.motions * own)));
-  }
-  if (told > most_told) text.append(" (and " + std::to_string(told - most_told) + " more)");
-  return text;
 }
 
 } // namespace rbvi

@@ -13,6 +13,13 @@
 
 namespace rbvi {
 
+std::string boundaries_of(const std::vector<Mean> &means) {
+  std::vector<std::string> names;
+  for (const Mean &mean : means)
+    names.push_back("'" + mean.boundary + "'");
+  return joined(names, " and ");
+}
+
 namespace {
 
 /// Adds the integral of the direction over a boundary, and its size times |direction|^2.
@@ -32,13 +39,6 @@ void add_integral(const Mean &mean, const Mesh &mesh, const Dofs &dofs, Vector &
         size += mean.direction[c] * *next;
       }
   }
-}
-
-std::string boundaries_of(const std::vector<Mean> &means) {
-  std::vector<std::string> names;
-  for (const Mean &mean : means)
-    names.push_back("'" + mean.boundary + "'");
-  return joined(names, " and ");
 }
 
 /// Throws bad_input where something that is no unknown changes the functional. Collective.

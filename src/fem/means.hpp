@@ -14,6 +14,9 @@ inline bool are_same(const std::vector<Mean> &some, const std::vector<Mean> &oth
   });
 }
 
+/// "'one' and 'other'".
+std::string boundaries_of(const std::vector<Mean> &means);
+
 /// The sum of some means by local node * components + component, fixed dofs included: what the
 /// facets of this rank give of it. Collective.
 Vector mean_functional(const std::vector<Mean> &means, const Mesh &mesh, const Dofs &dofs);

@@ -18,6 +18,8 @@ std::string vector_text(int dim, const Point &x) {
 
 namespace {
 
+constexpr std::size_t most_told = 3; ///< bodies
+
 /// Of either sign.
 std::string direction_text(int dim, const Point &x) {
   const double sign = *std::ranges::max_element(x, {}, [](double part) { return std::abs(part); });
@@ -63,6 +65,26 @@ std::string motions_text(int dim, const MeshPart &body, const Matrix &free) {
     texts.push_back(translations_text(dim, all.topRightCorner(dim, free.cols() - turning)));
   if (turning > 0) texts.push_back(turn_text(dim, body, all.leftCols(turning)));
   return joined(texts, " and ");
+}
+
+std::string describe(const std::vector<FreeBody> &bodies, int dim, const Matrix &motions) {
+  std::string text;
+  std::size_t told = 0;
+  Index first = 0;
+  for (const FreeBody &body : bodies) {
+    const Index count = body.motions.cols();
+    const Eigen::JacobiSVD<Matrix> svd(motions.middleRows(first, count), Eigen::ComputeThinU);
+    const Matrix own =
+        svd.matrixU().leftCols((svd.singularValues().array() > 1e-6 * motions.norm()).count());
+    first += count;
+    if (own.cols() == 0 || ++told > most_told) continue;
+    text.append(told == 1 ? "" : ", ")
+        .append(
+            body.name + " can " +
+            (body.turned ? "move along (0, 1)" : motions_text(dim, body.part, body.motions * own)));
+  }
+  if (told > most_told) text.append(" (and " + std::to_string(told - most_told) + " more)");
+  return text;
 }
 
 } // namespace rbvi

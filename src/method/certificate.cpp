@@ -62,10 +62,10 @@ Matrix solved_twice(const Matrix &square, const Matrix &right) {
   return once + lu.solve(right - square * once);
 }
 
-/// What B_n z is wanted to be: s at these rows.
+/// What B z is wanted to be: s at these rows.
 class Wanted {
 public:
-  explicit Wanted(const ColumnSource &columns, Index rows) : columns_(columns), b_(rows, 0) {}
+  Wanted(const ColumnSource &columns, Index rows) : columns_(columns), b_(rows, 0) {}
   void add(const Pairs &pairs) {
     const Matrix columns = columns_(pairs.functions);
     for (Index k = 0; k < columns.cols(); ++k)
@@ -85,57 +85,105 @@ public:
     result.functions.erase(result.functions.begin(), result.functions.begin() + known);
     return result;
   }
-  Lifting lifting(const Vector &s) const {
-    Lifting result{pairs_.functions, Vector(b_.cols()), -s};
+  Lifting lifting(const Vector &s, Index count) const {
+    Lifting result{Vector::Zero(count), -s};
     if (b_.cols() == 0) return result;
-    result.weights = solved_twice(b_(pairs_.rows, Eigen::all), s(pairs_.rows));
-    result.left += b_ * result.weights;
+    const Vector weights = solved_twice(b_(pairs_.rows, Eigen::all), s(pairs_.rows));
+    result.weights(pairs_.functions) = weights;
+    result.left += b_ * weights;
     return result;
   }
 
 private:
   const ColumnSource &columns_;
   Pairs pairs_;
-  Matrix b_; ///< B_n of these functions
+  Matrix b_; ///< B of these functions
 };
 
-/// Adds a multiple of the sum of all functions that leaves no row below zero.
-bool raise(const ColumnSource &columns, Index count, double roundoff, Lifting &lifting) {
-  if (lifting.left.minCoeff() >= -roundoff) return true;
-  std::vector<Index> all(count);
-  std::iota(all.begin(), all.end(), 0);
-  const Vector sum = columns(all).rowwise().sum();
-  for (Index row = 0; row < sum.size(); ++row) {
+/// Adds a multiple of the sum of all functions of normal rows that leaves none of these below zero.
+bool raise(const ColumnSource &columns, const std::vector<int> &own, const NodeLaws &laws,
+           double roundoff, Lifting &lifting) {
+  const auto least = [&] { return lifting.left(laws.normal).minCoeff(); };
+  if (least() >= -roundoff) return true;
+  std::vector<bool> is_normal(own.size(), false);
+  for (const Index row : laws.normal)
+    is_normal[row] = true;
+  const Pairs all = pairs_of(own, [&](Index row) { return is_normal[row]; });
+  const Vector sum = columns(all.functions).rowwise().sum();
+  double raised = 0;
+  for (const Index row : laws.normal) {
     if (lifting.left[row] >= -roundoff) continue;
     if (!(sum[row] > 0)) return false;
-    lifting.raised = std::max(lifting.raised, -lifting.left[row] / sum[row]);
+    raised = std::max(raised, -lifting.left[row] / sum[row]);
   }
-  lifting.left += lifting.raised * sum;
-  return lifting.left.minCoeff() >= -roundoff;
+  lifting.left += raised * sum;
+  lifting.weights(all.functions).array() += raised;
+  return least() >= -roundoff;
 }
+
+/// Which rows the lifting begins with, each with a function of its own.
+class FirstRows {
+public:
+  FirstRows(const Vector &s, const Vector &multiplier, const NodeLaws &laws, double roundoff)
+      : s_(s), x_(multiplier), laws_(laws), node_of_(s.size(), -1), is_asked_(s.size(), false) {
+    for (Index node = 0; node < laws.nodes(); ++node) {
+      const Index normal = laws.normal[node];
+      is_asked_[normal] = s[normal] > 0 || multiplier[normal] > 0;
+      if (!laws.has_tangent(node) || bound(node) == 0) continue;
+      for (Index row = laws.tangent[node]; row < laws.tangent[node] + laws.tangents; ++row) {
+        node_of_[row] = node;
+        is_asked_[row] = std::abs(s[row]) > roundoff;
+      }
+    }
+  }
+  bool is_asked(Index row) const { return is_asked_[row]; }
+  /// `lifted`: B of the row's function there.
+  bool is_wanted(Index row, double lifted) const {
+    const Index node = node_of_[row];
+    if (node < 0) return s_[row] > 0 || x_[row] + s_[row] / lifted > 0;
+    const auto at = [&](const Vector &rows) {
+      return rows.segment(laws_.tangent[node], laws_.tangents);
+    };
+    return (at(x_) + at(s_) / lifted).norm() < bound(node);
+  }
+
+private:
+  double bound(Index node) const { return laws_.bound[node].value(x_[laws_.normal[node]]); }
+
+  const Vector &s_, &x_;
+  const NodeLaws &laws_;
+  std::vector<Index> node_of_; ///< of a row with friction, -1: of others
+  std::vector<bool> is_asked_;
+};
 
 } // namespace
 
 std::optional<Lifting> lift(const ColumnSource &columns, Index count, const std::vector<int> &own,
-                            const Vector &s, const Vector &multiplier, double roundoff) {
+                            const Vector &s, const Vector &multiplier, const NodeLaws &laws,
+                            double roundoff) {
   constexpr int most_rounds = 10;
   Wanted wanted(columns, s.size());
-  const Pairs near = wanted.more(own, [&](Index row) { return s[row] > 0 || multiplier[row] > 0; });
+  const FirstRows first(s, multiplier, laws, roundoff);
+  const Pairs near = wanted.more(own, [&](Index row) { return first.is_asked(row); });
   const Matrix of_near = columns(near.functions);
   for (Index k = 0; k < of_near.cols(); ++k)
-    if (const Index row = near.rows[k];
-        s[row] > 0 || multiplier[row] + s[row] / of_near(row, k) > 0)
+    if (const Index row = near.rows[k]; first.is_wanted(row, of_near(row, k)))
       wanted.add(row, near.functions[k], of_near.col(k));
-  Lifting lifting = wanted.lifting(s);
+  Lifting lifting = wanted.lifting(s, count);
   for (int round = 0; round < most_rounds; ++round) {
-    const Pairs below = wanted.more(own, [&](Index row) { return lifting.left[row] < -roundoff; });
-    if (below.rows.empty()) break;
-    wanted.add(below);
-    lifting = wanted.lifting(s);
+    std::vector<bool> below(own.size(), false);
+    for (const Index row : laws.normal)
+      below[row] = lifting.left[row] < -roundoff;
+    const Pairs more = wanted.more(own, [&](Index row) { return below[row]; });
+    if (more.rows.empty()) break;
+    wanted.add(more);
+    lifting = wanted.lifting(s, count);
   }
-  if (!lifting.weights.allFinite() || !raise(columns, count, roundoff, lifting))
+  if (!lifting.weights.allFinite() || !raise(columns, own, laws, roundoff, lifting))
     return std::nullopt;
-  lifting.left = (lifting.left.array() > roundoff).select(lifting.left, 0);
+  for (const Index row : laws.normal)
+    lifting.left[row] = std::max(0.0, lifting.left[row]);
+  lifting.left = (lifting.left.array().abs() > roundoff).select(lifting.left, 0);
   return lifting;
 }
 

@@ -51,6 +51,18 @@ Matrix Compliance::moved(const SparseMatrix &b, const std::vector<Index> &which)
   return result;
 }
 
+Vector Compliance::displaced_by(const Vector &reaction) {
+  std::vector<Index> dofs;
+  for (Index dof = 0; dof < size_; ++dof)
+    if (reaction[dof] != 0) dofs.push_back(dof);
+  require(dofs);
+  LoadedColumns loaded;
+  loaded.add(reaction, *this);
+  Vector result = Vector::Zero(size_);
+  loaded.subtract_from(result, {0, size_});
+  return result;
+}
+
 void Compliance::forget() {
   count_ = 0;
   slot_.assign(size_, -1);

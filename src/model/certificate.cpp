@@ -93,14 +93,14 @@ Residual residual_of(const CertificateModel &certificate, const Vector &theta_a,
   return result;
 }
 
-/// B_n of lifting functions, each made once.
-ColumnSource pushes_of(const Matrix &functions, const SparseMatrix &b, const NodeLaws &laws) {
+/// B of lifting functions, each made once.
+ColumnSource pushes_of(const Matrix &functions, const SparseMatrix &b) {
   return [&, made = std::vector<bool>(functions.cols(), false),
-          all = Matrix(laws.nodes(), functions.cols())](const std::vector<Index> &which) mutable {
+          all = Matrix(b.rows(), functions.cols())](const std::vector<Index> &which) mutable {
     for (const Index function : which) {
       if (made[function]) continue;
       made[function] = true;
-      all.col(function) = Vector(b * functions.col(function))(laws.normal);
+      all.col(function) = b * functions.col(function);
     }
     return Matrix(all(Eigen::all, which));
   };
@@ -200,24 +200,19 @@ std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scen
   pushed(certificate.dofs).setZero();
   if ((pushed.array() != 0).any()) return std::nullopt;
 
-  std::vector<int> own;
-  for (const Index row : laws.normal)
-    own.push_back(certificate.own[row]);
+  const std::vector<int> &own = certificate.own;
   const Matrix &functions = certificate.lifting_trace;
-  const ColumnSource lifted = pushes_of(functions, b, laws);
-  const Vector pressing = x(laws.normal);
+  const ColumnSource lifted = pushes_of(functions, b);
   const std::optional<Lifting> lifting =
-      lift(lifted, functions.cols(), own, gaps.left(laws.normal), pressing, gaps.roundoff);
+      lift(lifted, functions.cols(), own, gaps.left, x, laws, gaps.roundoff);
   if (!lifting) return std::nullopt;
-  Vector z = Vector::Constant(functions.cols(), lifting->raised);
-  z(lifting->functions) += lifting->weights;
+  const Vector &z = lifting->weights;
 
   const Vector theta_a = affine_coefficients(model.body.a, scene.a, scene, answer.mu);
   const Vector theta_f = load_coefficients(model, scene, answer.mu);
   const Residual residual = residual_of(certificate, theta_a, theta_f, known, answer.u, z);
-  double slack = pressing.dot(lifting->left);
-  const Vector moved = b * Vector(functions * z);
-  if (laws.has_tangents()) slack += friction_slack(laws, x, gaps.left - moved);
+  double slack = x(laws.normal).dot(lifting->left(laws.normal));
+  if (laws.has_tangents()) slack += friction_slack(laws, x, -lifting->left);
   const ErrorBound bound = error_bound(residual.minus, residual.plus, slack);
   if (!std::isfinite(bound.u)) return std::nullopt; // A is no sum of those at the references
 
@@ -226,15 +221,14 @@ std::optional<AnswerBound> bound_of(const ReducedModel &model, const Scene &scen
   if (laws.has_tangents()) return result;
   // J(v) = J(u_N) + (r + B^T l_N) . z + z . A z / 2
   const double work = theta_f.size() > 0 ? answer.u.dot(model.body.f.reduced * theta_f) : 0.0,
-               pushing = x.dot(moved);
+               pushing = x.dot(b * Vector(functions * z));
   result.energy =
       interval(imposed_energy + square / 2 - work + residual.work + pushing + residual.square / 2,
                bound.gap, std::abs(imposed_energy) + square + std::abs(work) + std::abs(pushing));
   if (!forces) return result;
   const Forces both = forces_of(contact, answer.mu, gaps.at_mu, laws);
-  if (const auto linear =
-          linear_outputs(lifted, functions.cols(), own, pressing, lifting->left, both.of))
-    add_forces(certificate, theta_a, *linear, both, pressing, bound, result);
+  if (const auto linear = linear_outputs(lifted, functions.cols(), own, x, lifting->left, both.of))
+    add_forces(certificate, theta_a, *linear, both, x, bound, result);
   return result;
 }
 

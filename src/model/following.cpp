@@ -98,6 +98,7 @@ ReducedAnswer FollowingSolver::solve_from(const Start &start, const FullMu &mu,
   answer.energy = 0.5 * (answer.reaction.dot(problem.free - found.state) - load.squaredNorm());
   answer.u = evaluated_.moved_by(at_mu_, answer.reaction);
   if (unloaded.size() > 0) answer.u += unloaded;
+  answer.beyond_basis = found.state - model_.contact.trace * answer.u;
   if (held_by_contact) {
     const Matrix motions = at_mu_.free_motions();
     const Matrix held =

@@ -94,6 +94,13 @@ QueryOptions with_method(QueryOptions options, const ReducedModel &model, const 
   return options;
 }
 
+/// ReducedAnswer::beyond_basis, added to a displacement at the contact dofs.
+Vector with_beyond(const ReducedModel &model, const ReducedAnswer &solution, Vector at_contact) {
+  if (solution.beyond_basis.size() > 0)
+    at_contact(model.contact.law->condensed.dofs) += solution.beyond_basis;
+  return at_contact;
+}
+
 std::vector<std::vector<int>> nodes_of(const ContactModel &contact) {
   std::vector<std::vector<int>> nodes;
   for (const InterfaceModel &interface : contact.interfaces)
@@ -117,11 +124,11 @@ NodalTrace::NodalTrace(const ReducedModel &model, const Contact &contact)
     unknown_[dof] = false;
 }
 
-Vector NodalTrace::displacement(const Vector &u) const {
-  if (dofs_.empty()) return model_.contact.trace * u;
+Vector NodalTrace::displacement(const ReducedAnswer &solution) const {
+  if (dofs_.empty()) return with_beyond(model_, solution, model_.contact.trace * solution.u);
   Vector at_contact = Vector::Zero(model_.contact_dofs());
-  at_contact(dofs_) = trace_ * u;
-  return at_contact;
+  at_contact(dofs_) = trace_ * solution.u;
+  return with_beyond(model_, solution, std::move(at_contact));
 }
 
 Vector NodalTrace::gap_left(const ContactOperators &operators, const Vector &displacement) const {
@@ -240,7 +247,7 @@ ContactOperators OnlineSolver::nodal_operators(const ReducedAnswer &solution,
 
 Vector OnlineSolver::contact_gap(const ReducedAnswer &solution) const {
   const ContactOperators operators = nodal_operators(solution, multiplier(solution));
-  return trace_->gap_left(operators, trace_->displacement(solution.u));
+  return trace_->gap_left(operators, trace_->displacement(solution));
 }
 
 Vector OnlineSolver::field(const ReducedAnswer &solution) const {
@@ -259,17 +266,19 @@ Vector OnlineSolver::at_interface(const FullMu &mu, const Vector &columns,
   return u;
 }
 
-Grid OnlineSolver::contact_grid(const ReducedAnswer &solution, std::size_t interface) const {
+Vector OnlineSolver::at_contact_dofs(const ReducedAnswer &solution) const {
   const std::vector<int> &dofs = model_.contact.trace_dofs;
-  const Vector known = model_.contact.trace * solution.u;
-  Vector columns = known;
-  if (!dofs.empty()) {
-    columns = Vector::Constant(model_.contact_dofs(), std::numeric_limits<double>::quiet_NaN());
-    columns(dofs) = known;
-  }
+  Vector known = model_.contact.trace * solution.u;
+  if (dofs.empty()) return with_beyond(model_, solution, std::move(known));
+  Vector all = Vector::Constant(model_.contact_dofs(), std::numeric_limits<double>::quiet_NaN());
+  all(dofs) = known;
+  return all;
+}
+
+Grid OnlineSolver::contact_grid(const ReducedAnswer &solution, std::size_t interface) const {
   const Index rows = contact_.interfaces[interface]->dual().size();
   return contact_fields(*contact_.interfaces[interface], solution.mu,
-                        at_interface(solution.mu, columns, interface),
+                        at_interface(solution.mu, at_contact_dofs(solution), interface),
                         multiplier(solution).segment(contact_.first_row[interface], rows));
 }
 
@@ -280,7 +289,7 @@ void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vec
   if (scene_.outputs.empty() && !faces_surfaces) return;
   Vector columns; // once for all interfaces
   const auto of_interface = [&](std::size_t interface) {
-    if (columns.size() == 0) columns = model_.contact.trace * solution.u;
+    if (columns.size() == 0) columns = at_contact_dofs(solution);
     return at_interface(solution.mu, columns, interface);
   };
   add_named_outputs(scene_, contact_, solution.mu,
@@ -343,12 +352,11 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedAnswer &solution) const
   }
   if (nitsche_) {
     nitsche_->outputs(solution.mu, solution.u, result);
-    add_outputs_of_scene(solution, multiplier(solution), model_.contact.trace * solution.u,
-                         result);
+    add_outputs_of_scene(solution, multiplier(solution), model_.contact.trace * solution.u, result);
     check_finite(result);
     return result;
   }
-  const Vector lambda = multiplier(solution), at_vertices = trace_->displacement(solution.u);
+  const Vector lambda = multiplier(solution), at_vertices = trace_->displacement(solution);
   add_outputs_of_scene(solution, lambda, at_vertices, result);
   const ContactOperators operators = nodal_operators(solution, lambda);
   const Vector gap = trace_->gap_left(operators, at_vertices);

@@ -38,18 +38,18 @@ std::vector<Mu> reference_parameters(const Scene &scene) {
   return points;
 }
 
-/// The functions that lift gaps: one for each normal multiplier that the model can have.
+/// The functions that lift gaps and slips: one for each multiplier that the model can have.
 struct LiftedRows {
   std::vector<int> own; ///< CertificateModel::own
   Matrix forces;        ///< dual dofs x m: the multiplier of each
 };
 
-LiftedRows lifted_rows(const Contact &contact, const ReducedModel &model) {
+LiftedRows lifted_rows(const ReducedModel &model) {
   const Matrix &dual = model.contact.dual_basis;
   LiftedRows rows{std::vector<int>(dual.rows(), -1), Matrix::Zero(dual.rows(), dual.rows())};
   int count = 0; // mirror images have one each: the basis is symmetric to its tolerance alone
   for (Index row = 0; row < dual.rows(); ++row) {
-    if (!dual_row(contact, row).normal || dual.row(row).isZero(0)) continue;
+    if (dual.row(row).isZero(0)) continue;
     rows.own[row] = count;
     rows.forces(row, count++) = 1;
   }
@@ -237,7 +237,7 @@ Certificate make_certificate(Problem &problem, const LinearBasis &basis, const R
     return {{}, "the model knows displacements near contact alone"};
   if (is_told_by_law(problem, model)) return {told_by_law(problem, basis), ""};
   CertificateModel certificate;
-  LiftedRows rows = lifted_rows(problem.contact(), model);
+  LiftedRows rows = lifted_rows(model);
   certificate.own = std::move(rows.own);
   certificate.dofs = pushed_dofs(problem, model, training);
   if (std::ssize(certificate.dofs) > most_pushed_dofs)

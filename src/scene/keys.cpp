@@ -214,7 +214,8 @@ const std::vector<CaseKey> all_keys{
      "of the mesh, where a value is taken; of a solid three numbers", false, "m"},
     {"outputs.*", "integral", "expression",
      "in parameters, x, y, the displacement ux, uy (of a membrane u); over contacts pressure, gap, "
-     "tangential (the tangential stress), slip, contact and stick (1 or 0); over boundaries nx, ny "
+     "contact (1 or 0), of bodies tangential (the tangential stress), slip and stick; over "
+     "boundaries nx, ny "
      "(the normal); in the "
      "body, on boundaries and at points sigma_xx, sigma_yy, sigma_zz, sigma_xy, von_mises, "
      "strain_energy (elastic energy per volume), of a membrane slope_x, slope_y; of solids z, uz, "

@@ -51,7 +51,9 @@ bool is_there(const std::string &name, Place place, const Scene &scene) {
     const auto at = static_cast<std::size_t>(std::ranges::find(output_fields(), name) - begin);
     return at >= first && at <= last;
   };
-  if (is_one_of(field::pressure, field::slip) || is_one_of(field::contact, field::stick))
+  if (is_one_of(field::tangential, field::slip) || is_one_of(field::stick, field::stick))
+    return place == Place::contact && !membrane;
+  if (is_one_of(field::pressure, field::gap) || is_one_of(field::contact, field::contact))
     return place == Place::contact;
   if (is_one_of(field::nx, field::nz)) return place == Place::boundary;
   if (is_one_of(field::slope_x, field::slope_y)) return membrane && place != Place::contact;
@@ -73,9 +75,8 @@ void check_fields(const Reader &reader, const Scene &scene, const OutputForm &fo
           contact_names(scene) +
           "), nx and ny over boundaries, stresses and "
           "strain_energy over boundaries, regions and at points of elastic bodies, slope_x and "
-          "slope_y likewise of a membrane; u is that of a membrane, ux and uy of others; z, uz, "
-          "nz, sigma_yz and sigma_xz "
-          "are of solids");
+          "slope_y likewise of a membrane, which has no tangential, slip and stick; u is that of a "
+          "membrane, ux and uy of others; z, uz, nz, sigma_yz and sigma_xz are of solids");
     if (std::ranges::find(reader.parameters, name) != reader.parameters.end() ||
         std::ranges::find(reader.lets, name, &Let::name) != reader.lets.end())
       throw bad_input("in outputs '" + name +
@@ -221,6 +222,11 @@ void put_moment(Reader &reader, const CaseNode &node, const Scene &scene, Output
   check_moment(scene, form, about);
 }
 
+/// Over what a membrane is, the region of an obstacle as any other.
+bool is_over_cells(const OutputForm &form, const Scene &scene) {
+  return form.place == Place::region || (form.place == Place::contact && scene.components == 1);
+}
+
 /// Nothing where it is not known. Of plane problems what is integrated is that of a unit of
 /// thickness.
 std::optional<Dimension> dimension_of_output(const Reader &reader, const CaseNode &node,
@@ -236,7 +242,7 @@ std::optional<Dimension> dimension_of_output(const Reader &reader, const CaseNod
   std::optional<Dimension> dimension = Dimension{};
   if (form.kind != Kind::measure) dimension = Dimensions(reader).of(entry(node, kind_of(node)));
   if (dimension && whole)
-    (*dimension)[0] += scene.dim - (form.place == Place::region ? 0 : 1) + scene.axisymmetric;
+    (*dimension)[0] += scene.dim - (is_over_cells(form, scene) ? 0 : 1) + scene.axisymmetric;
   return dimension;
 }
 
@@ -256,10 +262,6 @@ OutputForm output_in(Reader &reader, const std::string &name, const CaseNode &no
     put_moment(reader, node, scene, form);
   } else {
     put_place(reader, node, scene, form);
-    if (form.place == Place::contact && scene.components == 1)
-      throw bad_input("outputs over contact are of curves, that of a membrane is a region: of it "
-                      "there are normal_force, contact_measure and peak_pressure, and with 'in: "
-                      "REGION' what its displacement gives");
     put_values(reader, node, entry(node, kind), scene, form);
   }
   if (const CaseNode *says = node.find("says")) form.says = says->value;

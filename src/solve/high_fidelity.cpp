@@ -110,8 +110,11 @@ HighFidelity::~HighFidelity() = default;
 MethodResult HighFidelity::run(const Mu &mu, const Operators &op, const Vector &slip,
                                const Solved *near, bool continues) {
   MethodResult result = method_->solve({mu, op, slip, *solved_, near, continues});
-  if (!result.converged)
-    throw failure(result.reason + " (" + std::to_string(result.iterations) + " iterations)");
+  if (!result.converged) {
+    const std::string shared = overdetermined(problem_.contact());
+    throw failure(result.reason + " (" + std::to_string(result.iterations) + " iterations)" +
+                  (shared.empty() ? "" : "; " + shared));
+  }
   return result;
 }
 

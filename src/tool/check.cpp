@@ -306,8 +306,11 @@ void command_check(const MeasureOptions &options, const SolveOptions &solve) {
   try_free_bodies(problem, solver, unheld);
   if (rank_of(world) == 0) {
     print_unheld(problem.scene().parameters, unheld);
-    std::cout << (warned ? "no error was found; what was warned of stands\n"
-                         : "no defect was found\n");
+    const std::string shared = overdetermined(problem.contact());
+    if (!shared.empty()) std::cout << "warning: " << shared << '\n';
+    std::cout << (warned || !shared.empty() || !unheld.empty()
+                      ? "no error was found; what was warned of stands\n"
+                      : "no defect was found\n");
   }
   if (solve.run_tests) run_tests(options);
 }

@@ -92,14 +92,14 @@ TEST_F(Cases, WhereBodiesAreNotHeldIsTold) {
                      "where no contact and no friction prevents it (the first of 3 such "
                      "parameters)\n"))
       << says;
-  EXPECT_TRUE(contains(says, "no defect was found")) << says;
+  EXPECT_TRUE(contains(says, "no error was found; what was warned of stands")) << says;
   write("[-0.1, 1]", "[0.2, 1]");
   const std::string lifted = output_of(rbvi(2, "check pressed.yaml"));
   EXPECT_TRUE(contains(lifted, "warning: no answer at press=-0.1 friction=0.2: the body can move "
                                "along (0, 1), and is pushed where no contact and no friction can "
                                "hold it (the first of "))
       << lifted;
-  EXPECT_TRUE(contains(lifted, "no defect was found")) << lifted;
+  EXPECT_TRUE(contains(lifted, "no error was found; what was warned of stands")) << lifted;
 }
 
 /// A body above a rim: triangles from (0, 1) to each edge.
@@ -133,6 +133,30 @@ TEST_F(Cases, AMeshOfOnesOwnBeginsACaseOfIt) {
   EXPECT_TRUE(contains(text, "mesh: {file: '../fan.msh'")) << text;
   EXPECT_TRUE(contains(text, "boundaries: top, [it's: #1")) << text;
   EXPECT_TRUE(contains(output_of(rbvi(1, "check own")), "error was found")); // two edges: a warning
+}
+
+/// A body in the corner of a floor and a wall, which share the node there.
+TEST_F(Cases, ACornerOfTwoContactsAsksForDegree2) {
+  std::string mesh = fan({{-1, 0.5}, {-1, 0}, {0, 0}, {1, 0.2}});
+  mesh.replace(mesh.find("3\n1 1 \"top\""), 1, "4\n1 4 \"wall\"");
+  mesh.replace(mesh.find("\n3 1 2 2 2 2 3\n"), 15, "\n3 1 2 4 4 2 3\n");
+  spill("corner.msh", mesh);
+  for (const bool friction : {true, false})
+    for (const char *degree : {"1", "2"}) {
+      spill("corner.yaml",
+            std::string("rbvi: 1\nphysics: plane_strain\nmesh: {file: corner.msh, degree: ") +
+                degree +
+                "}\nparameters: {push: {range: [0.01, 0.02], default: 0.01}}\n"
+                "materials: {body: {at: all, E: 1, nu: 0.3}}\n"
+                "imposed: {top: {at: top, ux: -push, uy: -push}}\ncontact:\n"
+                "  floor: {at: rim, against: {plane: {normal: [0, -1], position: 0}}" +
+                (friction ? ", friction: {coulomb: 0.3}" : "") +
+                "}\n  wall: {at: wall, against: {plane: {normal: [-1, 0], position: 1}}}\n");
+      const std::string says = output_of(rbvi(1, "check corner.yaml"));
+      EXPECT_EQ(contains(says, "the contacts floor and wall share 1 node"),
+                friction && degree == std::string("1"))
+          << says;
+    }
 }
 
 /// Half of a disk of radius 1, its edges 1 - cos(15 degrees) inside; and a wedge, which has a

@@ -360,7 +360,7 @@ TEST(ObstacleInterface, FieldsAreThoseOfTheMappedRegion) {
   const FullMu mu{0.7};
   const Grid grid = scene.contacts.front().make(scene, mesh)->fields(mu, u, lambda, false);
   EXPECT_EQ(grid.cells, mesh.entities);
-  ASSERT_EQ(grid.of_nodes.size(), 4U);
+  ASSERT_EQ(grid.of_nodes.size(), 5U);
   EXPECT_EQ(grid.of_nodes[0].values, lambda);
   EXPECT_EQ(Vector(grid.of_nodes[2].values.tail<3>()), (Vector{{0, 0, -1}})) << "downwards";
   for (Index i = 0; i < 9; ++i) {

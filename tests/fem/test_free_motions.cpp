@@ -7,6 +7,7 @@
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/fem/free_motions.hpp"
 #include "rbvi/fem/problem.hpp"
+#include "rbvi/scene/case.hpp"
 #include "tests/catalogue.hpp"
 
 namespace rbvi::free_motions_test {
@@ -101,6 +102,31 @@ TEST(FreeMotions, TermsOfAHoldABody) {
   Scene two = with_fixed(make_scene("patch"), {});
   two.a.push_back(exact_term(spring("bottom", 1, 2, 1)));
   EXPECT_EQ(motions(two), "the body 'upper' between (0, 0) and (1, 0.5) can move and turn");
+}
+
+/// What holds a body holds it in the whole box.
+TEST(FreeMotions, ASpringWithoutStiffnessSomewhereIsRefused) {
+  const auto made = [](const std::string &stiffness, const std::string &other) {
+    return make_scene(
+        read_case("rbvi: 1\nphysics: plane_strain\nmesh: {built_in: one_block, degree: 1}\n"
+                  "parameters: {k: {range: [0, 2], default: 1}}\n"
+                  "materials: {rubber: {at: all, E: 15, nu: 0.3}}\n"
+                  "imposed: {top: {at: top, uy: -0.01}}\nsprings:\n"
+                  "  side: {at: sides, direction: [1, 0], stiffness: '" +
+                      stiffness + "'}\n" + other +
+                      "contact: {floor: {at: contact, against: {plane: {normal: [0, -1], position: "
+                      "0}}}}\n",
+                  "case.yaml"),
+        {});
+  };
+  const auto make = [&](const std::string &stiffness, const std::string &other = "") {
+    Problem(PETSC_COMM_WORLD, made(stiffness, other), {});
+  };
+  EXPECT_NO_THROW(make("k + 1"));
+  EXPECT_NO_THROW(make("k", "  foot: {at: contact, direction: [1, 0], stiffness: 1}\n"));
+  EXPECT_TRUE(refuses("the spring on 'sides' has no stiffness at k=0, and nothing else holds the "
+                      "body: let the stiffness stay above 0",
+                      [&] { make("k"); }));
 }
 
 TEST(FreeMotions, OfABodyInSpaceAreNamed) {

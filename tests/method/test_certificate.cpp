@@ -67,27 +67,26 @@ struct Certified {
 };
 
 Certified certify(const Problem &p, const Vector &u, const Vector &l) {
-  const Index n = p.nodes();
-  const Matrix functions = lu_solve(p.a, p.b.topRows(n).transpose());
+  const Index rows = p.b.rows();
+  const Matrix functions = lu_solve(p.a, p.b.transpose());
   const Vector s = p.b * u - p.g;
-  std::vector<int> own;
-  for (Index row = 0; row < n; ++row)
-    own.push_back(static_cast<int>(row));
-  const Matrix of_functions = p.b.topRows(n) * functions;
-  const auto lifting = lift(columns_of(of_functions), n, own, s.head(n), l.head(n), 1e-14);
+  std::vector<int> own(rows);
+  std::iota(own.begin(), own.end(), 0);
+  const Matrix of_functions = p.b * functions;
+  const auto lifting = lift(columns_of(of_functions), rows, own, s, l, p.laws, 1e-14);
   if (!lifting) {
     ADD_FAILURE() << "not lifted";
     return {};
   }
-  Vector weights = Vector::Constant(n, lifting->raised);
-  weights(lifting->functions) += lifting->weights;
-  const Vector z = functions * weights, v = u - z, r = p.f - p.a * u - p.b.transpose() * l;
-  EXPECT_GE((p.g - p.b * v).head(n).minCoeff(), -1e-12);
-  double slack = l.head(n).dot(lifting->left);
-  const Vector slip = p.b * v - p.g;
-  for (Index row = n; row < p.b.rows(); ++row)
-    slack += std::max(0.0, p.laws.bound[row - n].value(1) * std::abs(slip[row]) -
-                               l[row] * slip[row]); // of round-off where it slips
+  const Vector z = functions * lifting->weights, v = u - z, r = p.f - p.a * u - p.b.transpose() * l;
+  EXPECT_GE((p.g - p.b * v).head(p.nodes()).minCoeff(), -1e-12);
+  EXPECT_LE((lifting->left - (p.g - p.b * v)).cwiseAbs().maxCoeff(), 1e-12);
+  double slack = l.head(p.nodes()).dot(lifting->left.head(p.nodes()));
+  for (Index row = p.nodes(); row < rows; ++row) {
+    const double slip = -lifting->left[row];
+    slack += std::max(0.0, p.laws.bound[row - p.nodes()].value(1) * std::abs(slip) -
+                               l[row] * slip); // of round-off where it slips
+  }
   return {error_bound(p.dual_norm(r - p.a * z), p.dual_norm(r + p.a * z), slack), v};
 }
 
@@ -175,21 +174,29 @@ TEST(Certificate, LinearOutputsNeedAFunctionWhereSomethingPresses) {
       << "it might";
 }
 
+/// Where nodes stick, too, although their slips have errors.
 TEST(Certificate, IsSharpNearTheAnswer) {
-  Random random(6);
-  std::vector<double> effectivities;
-  for (int k = 0; k < 100; ++k) {
-    const Problem p = random_problem(random, 4, 14, 0);
-    const Answer exact = solve(p);
-    // A multiplier where the gap is open costs what it works there: to first order.
-    const Vector u = exact.u + 1e-3 * random.vector(exact.u.size()),
-                 l = exact.l + 1e-3 * exact.l.cwiseProduct(random.vector(exact.l.size()));
-    const double both =
-        std::hypot(p.norm(exact.u - u), p.dual_norm(p.b.transpose() * (exact.l - l)));
-    effectivities.push_back(certify(p, u, l).bound.u / both);
+  for (const double threshold : {0.0, 0.3}) {
+    Random random(6);
+    std::vector<double> effectivities;
+    for (int k = 0; k < 100; ++k) {
+      const Problem p = random_problem(random, 4, 14, threshold);
+      const Answer exact = solve(p);
+      // A multiplier where the gap is open costs what it works there: to first order; and so does
+      // what it lacks of the bound where a node slips.
+      Vector u = exact.u + 1e-3 * random.vector(exact.u.size()),
+             l = exact.l + 1e-3 * exact.l.cwiseProduct(random.vector(exact.l.size()));
+      for (Index row = p.nodes(); row < l.size(); ++row)
+        if (std::abs(exact.l[row]) > threshold * (1 - 1e-9)) l[row] = exact.l[row];
+      l = admissible(p.laws, l);
+      const double both =
+          std::hypot(p.norm(exact.u - u), p.dual_norm(p.b.transpose() * (exact.l - l)));
+      effectivities.push_back(certify(p, u, l).bound.u / both);
+    }
+    std::ranges::sort(effectivities);
+    EXPECT_LE(effectivities[effectivities.size() / 2], 1.5)
+        << "over the errors of u and l together, threshold " << threshold;
   }
-  std::ranges::sort(effectivities);
-  EXPECT_LE(effectivities[effectivities.size() / 2], 1.5) << "over the errors of u and l together";
 }
 
 /// Of a sum of matrices with c >= 0 the norm over references is above the true one, and it where a
@@ -222,7 +229,7 @@ TEST(Certificate, NormOverReferences) {
 
 std::optional<Lifting> lifted_by(const Matrix &b, const std::vector<int> &own, const Vector &s,
                                  const Vector &l) {
-  return lift(columns_of(b), b.cols(), own, s, l, 1e-15);
+  return lift(columns_of(b), b.cols(), own, s, l, uniform_laws(b.rows(), 1, {}), 1e-15);
 }
 
 /// What is not lifted by a function of its own is raised, or it is said; mirror images share one.
@@ -231,12 +238,11 @@ TEST(Certificate, LiftsWhatItCan) {
   const Vector l = Vector{{1.0, 0.0, 0.0}};
   const auto lifting = lifted_by(b, {0, 1, -1}, Vector{{-0.1, 0.2, -3.0}}, l);
   ASSERT_TRUE(lifting);
-  EXPECT_EQ(lifting->functions, (std::vector<Index>{0, 1}));
   EXPECT_NEAR((b * lifting->weights)[0], -0.1, 1e-14);
   EXPECT_EQ(lifting->left.head(2), Vector::Zero(2));
   const auto raised = lifted_by(b, {0, 1, -1}, Vector{{0.1, 0.2, 0.3}}, l);
   ASSERT_TRUE(raised);
-  EXPECT_GT(raised->raised, 0);
+  EXPECT_GT(raised->left.head(2).minCoeff(), 0) << "both rise with the third";
   EXPECT_GE(raised->left.minCoeff(), 0);
   EXPECT_FALSE(lifted_by(-b, {0, 1, -1}, Vector{{0.1, 0.2, 0.3}}, l)) << "the third stays below";
   const auto pair = lifted_by(Matrix{{2.0}, {2.0}}, {0, 0}, Vector{{0.1, 0.1}}, Vector{{1.0, 1.0}});

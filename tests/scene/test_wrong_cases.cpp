@@ -42,7 +42,7 @@ TEST(WrongCase, Outputs) {
   });
 }
 
-/// At its line, not by the first solve.
+/// At its line, not by the first solve: what a membrane has not.
 TEST(WrongCase, OutputsOverTheContactOfAMembrane) {
   const auto with = [](const std::string &output) {
     return said("rbvi: 1\nphysics: membrane\nmesh: {built_in: square_with_disc}\n"
@@ -51,12 +51,15 @@ TEST(WrongCase, OutputsOverTheContactOfAMembrane) {
                 "contact: {c: {at: obstacle, above: height}}\noutputs:\n  own: " +
                 output + "\n");
   };
-  for (const char *over : {"{measure: contact, at: c}", "{integral: pressure}", "{max: u}"}) {
+  for (const char *over :
+       {"{measure: stick, at: c}", "{integral: tangential}", "{max: slip}", "{max: ux, at: c}"}) {
     const std::string message = with(over);
     EXPECT_TRUE(message.starts_with("x.yaml:8:")) << message;
-    EXPECT_NE(message.find("outputs over contact are of curves"), std::string::npos) << message;
+    EXPECT_NE(message.find("has no tangential, slip and stick"), std::string::npos) << message;
   }
-  EXPECT_EQ(with("{max: u, in: obstacle}"), "");
+  for (const char *over : {"{max: u, in: obstacle}", "{measure: contact, at: c}",
+                           "{integral: pressure*x, where: y > 0}", "{max: u - gap}"})
+    EXPECT_EQ(with(over), "") << over;
 }
 
 TEST(WrongCase, TheBlockItselfIsRight) {

@@ -4,6 +4,7 @@
 
 #include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/model/online.hpp"
 #include "rbvi/mor/answered_responses.hpp"
 #include "rbvi/par/columns.hpp"
 #include "rbvi/scene/case.hpp"
@@ -102,6 +103,33 @@ TEST(AnsweredResponses, HoldTheDisplacementsOfAllParameters) {
     EXPECT_LT(appended, loads.joining());
     EXPECT_LE(distance(r.problem, unseen, r.bases.pod.basis), 2 * tolerance)
         << "in V; the tolerance is one of the energy";
+  }
+}
+
+/// The basis is that of two samples, and misses what contact does elsewhere: at the contact dofs
+/// the compliance behind the law knows it.
+TEST(AnsweredResponses, GapsAreThoseOfTheLawWhateverTheBasis) {
+  Reduced r(scene_of("two_disks", {{"arc_edges", "16"}}), "grid:2");
+  ReduceOptions options;
+  options.condensed.responses = 0;
+  r.reduce(options);
+  OnlineSolver solver(r.model);
+  for (const Mu &mu : parse_set(r.problem.scene().parameters, "random:4:3")) {
+    const ReducedAnswer answer = solver.solve(mu);
+    const ContactOperators &op = answer.contact;
+    Vector u = r.model.contact.trace * answer.u;
+    const Vector of_basis = op.b * u - op.g;
+    u(r.model.contact.law->condensed.dofs) += answer.beyond_basis;
+    const Vector left = op.b * u - op.g, lambda = solver.multiplier(answer);
+    const double size = op.g.cwiseAbs().maxCoeff();
+    EXPECT_GT(of_basis.maxCoeff(), 1e-4 * size);
+    EXPECT_LE(left.maxCoeff(), 1e-10 * size);
+    for (Index row = 0; row < left.size(); ++row)
+      if (lambda[row] > 0) EXPECT_NEAR(left[row], 0, 1e-10 * size);
+    const Outputs full = HighFidelity(r.problem, {}).solve(mu).outputs;
+    EXPECT_NEAR(*solver.outputs(mu, answer).max_penetration, *full.max_penetration,
+                1e-9 * *full.max_penetration)
+        << "between the nodes";
   }
 }
 

@@ -60,8 +60,8 @@ void expect_bounds(const Effectivities &found, const Case &c, double width) {
   EXPECT_TRUE((bound ? found.indicators : found.values).empty());
   std::ranges::sort(values);
   if (bound) EXPECT_GE(values.front(), 1 - 1e-4) << "the error is known to 1e-8 of u";
-  EXPECT_LE(values[values.size() / 2], bound ? 2 : 20);
-  if (bound) EXPECT_LE(values.back(), 3);
+  EXPECT_LE(values[values.size() / 2], 2);
+  EXPECT_LE(values.back(), 3);
   EXPECT_EQ(found.widths.size(), frictionless ? 3U : 0U) << "energy, normal_force, reaction";
   if (frictionless) EXPECT_LE(found.widths.at("energy"), width);
   // Of first order where that of the energy is of second.

@@ -98,6 +98,53 @@ TEST(Obstacles, BothAreReduced) {
   }
 }
 
+/// A string over a parabola, as a strip: the pressure is the curvature, 2, where they touch, over a
+/// width of 1 - 2 sqrt(1/4 - height); the strip is 1/2 wide.
+Scene strip(const std::string &degree, const std::string &more) {
+  return scene_of("mesh: {built_in: two_blocks, degree: " + degree +
+                  "}\nparameters: {height: {range: [0.08, 0.15], default: 0.1}}\n"
+                  "imposed: {ends: {at: sides, u: 0}}\n"
+                  "contact: {it: {at: upper, above: height - (x - 1/2)^2" +
+                  more +
+                  "}}\noutputs: {push: {integral: pressure}, width: {measure: contact}, peak: "
+                  "{max: pressure}, arm: {integral: pressure*x}, inner: {mean: pressure, where: "
+                  "'abs(x - 1/2) < 0.04'}, open: {max: gap}, least: {min: gap}, touched: {mean: u, "
+                  "where: contact}, ground: {mean: height - (x - 1/2)^2, where: contact}}\n");
+}
+
+TEST(Obstacles, OutputsOverTheirRegions) {
+  for (const std::string degree : {"1", "2"})
+    for (const std::string more : {"", ", lumped: no, adhesion: 0.3"}) {
+      SCOPED_TRACE(degree + more);
+      Problem problem(PETSC_COMM_WORLD, strip(degree, more), {.refine = 3});
+      const Outputs found = HighFidelity(problem, {}).solve({0.1}).outputs;
+      const double push = *found.normal_force;
+      EXPECT_NEAR(named(found, "push"), push, 1e-12 * push);
+      EXPECT_NEAR(named(found, "peak"), *found.peak_pressure, 1e-12 * push);
+      EXPECT_NEAR(named(found, "arm"), push / 2, 2e-3 * push) << "but for the triangles";
+      EXPECT_NEAR(named(found, "touched"), named(found, "ground"), 1e-3 * 0.1);
+      EXPECT_GT(named(found, "open"), 0.05);
+      EXPECT_NEAR(named(found, "least"), 0, 2e-3 * 0.1) << "between the nodes";
+      if (!more.empty()) continue;
+      EXPECT_NEAR(named(found, "inner"), 2, 1e-2);
+      EXPECT_NEAR(named(found, "width"), (1 - 2 * std::sqrt(0.25 - 0.1)) / 2, 0.01)
+          << "half an edge at both ends";
+    }
+}
+
+TEST(Obstacles, OutputsOverTheirRegionsAreReduced) {
+  Reduced made(strip("1", ""), "grid:12");
+  made.reduce(testing_reduced::everything());
+  HighFidelity solver(made.problem, {});
+  OnlineSolver online(made.model);
+  for (const Mu &mu : {Mu{0.0873}, Mu{0.1281}}) {
+    const Outputs full = solver.solve(mu).outputs, found = online.outputs(mu, online.solve(mu));
+    for (const char *name : {"push", "peak", "arm", "open", "touched"})
+      EXPECT_NEAR(named(found, name), named(full, name), 1e-2 * std::abs(named(full, name)))
+          << name;
+  }
+}
+
 /// As a number, a parameter, a function of the point, and on a mapped domain: -Laplace u + c u = f
 /// on 2 times the square is -Laplace v + 4 c v = 4 f on the square.
 TEST(Zeroth, IsTheSameHoweverItIsWritten) {

@@ -38,6 +38,10 @@ void stack(const Contact &contact, const std::vector<ContactOperators> &all,
 void assemble_nodal(const Contact &contact, const FullMu &mu, const ContactState &state,
                     const Vector &lambda, ContactOperators &operators);
 
+/// Contacts that share vertices of cells of degree 1, one of them with friction: multipliers there
+/// may ask more than the displacement of a vertex can meet, and how that ends. Empty: none do.
+std::string overdetermined(const Contact &contact);
+
 /// Whether some interface follows the state; whether all that do have a curvature.
 bool follows_state(const Contact &contact);
 bool has_curvature(const Contact &contact);

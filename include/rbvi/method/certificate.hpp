@@ -16,6 +16,7 @@
 
 #include "rbvi/core/dense.hpp"
 #include "rbvi/method/lcp.hpp"
+#include "rbvi/method/node_laws.hpp"
 
 #include <optional>
 #include <vector>
@@ -37,20 +38,20 @@ ErrorBound error_bound(double minus, double plus, double slack);
 /// Infinite where A is no such sum.
 double norm_over_references(const Matrix &references, const Vector &theta, const Vector &norms);
 
-/// z as a combination of some lifting functions and, `raised` times, of the sum of all; and
-/// B_n z - s >= 0 at every row.
+/// z as a combination of the lifting functions, and B z - s: at normal rows >= 0, at others minus
+/// the slip of u_N - z.
 struct Lifting {
-  std::vector<Index> functions;
   Vector weights, left;
-  double raised = 0;
 };
 
-/// `columns`: B_n of some of the `count` lifting functions; `own`: of each row the function that
+/// `columns`: B of some of the `count` lifting functions; `own`: of each row the function that
 /// lifts it, -1: none does; `s`, `multiplier`: rows. Rows whose multiplier stays positive under s
-/// get B_n z = s, others as much as they need. What is left within `roundoff` of zero is zero.
-/// Nothing where some row cannot be lifted.
+/// get B_n z = s, other normal ones as much as they need; nodes whose traction stays below its
+/// bound under their slip get B_t z = s, so that they do not slip. What is left within `roundoff`
+/// of zero is zero. Nothing where some normal row cannot be lifted.
 std::optional<Lifting> lift(const ColumnSource &columns, Index count, const std::vector<int> &own,
-                            const Vector &s, const Vector &multiplier, double roundoff);
+                            const Vector &s, const Vector &multiplier, const NodeLaws &laws,
+                            double roundoff);
 
 /// Of an output p . l_n: with v the lifting functions times `weights`, |p . (l_n - l_N)| is at most
 /// |v| times ErrorBound::multiplier plus `far` times ErrorBound::gap.
@@ -59,9 +60,9 @@ struct LinearOutput {
   double far;
 };
 
-/// One for each column of `outputs`, p at the rows of B_n. `columns`, `count`, `own`, `multiplier`:
-/// as in lift; `left`: the gaps of u_N - z, >= 0. Nothing where a row presses without a function of
-/// its own, or might.
+/// Without friction, one for each column of `outputs`, p at the rows of B. `columns`, `count`,
+/// `own`, `multiplier`: as in lift; `left`: the gaps of u_N - z, >= 0. Nothing where a row presses
+/// without a function of its own, or might.
 std::optional<std::vector<LinearOutput>> linear_outputs(const ColumnSource &columns, Index count,
                                                         const std::vector<int> &own,
                                                         const Vector &multiplier,

@@ -30,6 +30,8 @@ public:
   Eigen::Map<const Vector> column(Index dof) const;
   /// C B^T(:, which), size() x which.size(); columns as require() does. Collective likewise.
   virtual Matrix moved(const SparseMatrix &b, const std::vector<Index> &which);
+  /// -C `reaction`, by the columns of entries that are not zero, as require() makes them.
+  Vector displaced_by(const Vector &reaction);
   /// The column of this dof is zero at the other dofs.
   virtual Range body_of(Index) const { return {0, size_}; }
 

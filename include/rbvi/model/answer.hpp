@@ -19,6 +19,9 @@ struct ReducedAnswer : Answer {
   Vector theta_b;           ///< coefficients of b at this mu, where it separates
   ContactOperators contact; ///< at this mu, where B or G is evaluated
   Vector reaction;          ///< with them, of the law at nodes: B^T x on CondensedOperator::dofs
+  /// Of the displacement at these dofs: what the compliance behind the law has beyond the basis. An
+  /// answer with it has the gaps of the law. Empty: not known.
+  Vector beyond_basis{};
   Vector left{};     ///< of the law at all nodes: H x + q, of which displace() makes the residual
   double energy = 0; ///< a(u,u)/2 - f(u), of the domain alone (not its mirror images)
   double least_pressure = 0; ///< of the peak: where there is at most so much a node counts as free

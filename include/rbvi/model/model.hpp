@@ -249,8 +249,8 @@ struct CertificateModel {
   Matrix of_loads, left_of_loads;
   std::vector<CertificateReference> references;
   std::vector<int> dofs; ///< contact dofs that multipliers push, rising
-  std::vector<int> own;  ///< of each dual dof the function that lifts its gap, -1: none does
-  Matrix lifting_trace;  ///< contact dofs x m: the lifting functions
+  std::vector<int> own; ///< of each dual dof the function that lifts its gap or slip, -1: none does
+  Matrix lifting_trace; ///< contact dofs x m: the lifting functions
   bool exists() const { return by_law || !references.empty(); }
 };
 

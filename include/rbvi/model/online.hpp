@@ -28,9 +28,9 @@ class NodalTrace {
 public:
   /// `model` must outlive it.
   NodalTrace(const ReducedModel &model, const Contact &contact);
-  /// The displacement of coefficients u at the contact dofs that single nodes are constrained at;
-  /// zero at the others.
-  Vector displacement(const Vector &u) const;
+  /// The displacement of an answer at the contact dofs that single nodes are constrained at, at
+  /// least; zero at the others.
+  Vector displacement(const ReducedAnswer &solution) const;
   /// nodal_gap - nodal_b times that; infinite at nodes where the model has no displacement.
   Vector gap_left(const ContactOperators &operators, const Vector &displacement) const;
   /// Throws failure where `gap`, of gap_left, says that bodies meet at a node without multipliers,
@@ -86,6 +86,8 @@ public:
   const Contact &contact() const { return contact_; }
 
 private:
+  /// The displacement of an answer at all contact dofs.
+  Vector at_contact_dofs(const ReducedAnswer &solution) const;
   /// At the nodes of an interface, the values that boundaries impose among them. `columns`: at the
   /// contact dofs.
   Vector at_interface(const FullMu &mu, const Vector &columns, std::size_t interface) const;
