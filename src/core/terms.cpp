@@ -35,15 +35,18 @@ std::vector<std::string> names_of(const std::vector<Factor> &factors,
 }
 
 /// The varying factors that every term has, a factor that they have twice twice.
-std::vector<Factor> common_factors(const Sum &sum, const ParameterSpace &space) {
+std::vector<const Factor *> common_factors(const Sum &sum, const ParameterSpace &space) {
+  std::vector<const Factor *> common;
   if (sum.empty() || !std::ranges::all_of(sum, [](const Term &term) { return !!term.theta; }))
-    return {};
-  std::vector<Factor> common = *sum.front().theta;
-  std::erase_if(common, [&](const Factor &factor) { return !varies(factor, space); });
+    return common;
+  for (const Factor &factor : *sum.front().theta)
+    if (varies(factor, space)) common.push_back(&factor);
   for (const Term &term : sum) {
-    std::vector<Factor> own = *term.theta;
-    std::erase_if(common, [&](const Factor &factor) {
-      const auto found = std::ranges::find(own, factor.name, &Factor::name);
+    std::vector<const Factor *> own;
+    for (const Factor &factor : *term.theta)
+      own.push_back(&factor);
+    std::erase_if(common, [&](const Factor *factor) {
+      const auto found = std::ranges::find(own, factor->name, &Factor::name);
       const bool missing = found == own.end();
       if (!missing) own.erase(found);
       return missing;
@@ -122,16 +125,16 @@ std::vector<double> exact_coefficients(const Sum &sum, const SplitSum &split,
 double common_coefficient(const Sum &sum, const ParameterSpace &space,
                           const FullMu &all_parameters) {
   double product = 1;
-  for (const Factor &factor : common_factors(sum, space))
-    product *= value_of(factor, space, all_parameters);
+  for (const Factor *factor : common_factors(sum, space))
+    product *= value_of(*factor, space, all_parameters);
   return product;
 }
 
 std::vector<int> parameters_beside_common(const Sum &sum, const ParameterSpace &space) {
   Sum rest = sum;
-  for (const Factor &factor : common_factors(sum, space))
+  for (const Factor *factor : common_factors(sum, space))
     for (Term &term : rest)
-      term.theta->erase(std::ranges::find(*term.theta, factor.name, &Factor::name));
+      term.theta->erase(std::ranges::find(*term.theta, factor->name, &Factor::name));
   std::vector<int> parameters = space.free;
   std::erase_if(parameters, [&](int i) { return !depends_on(rest, i); });
   return parameters;

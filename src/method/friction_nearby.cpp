@@ -63,7 +63,7 @@ void admit_changes(const LazyColumns &h, const NodeLaws &laws, const ActiveSets 
 }
 
 /// The row of an unknown times the columns of others, by the symmetry of H.
-double entry(const Unknown &of, const Vector &row, const NodeLaws &laws, const ActiveSets &sets) {
+double entry(const Unknown &of, const MovedBy &row, const NodeLaws &laws, const ActiveSets &sets) {
   double result = along(of, row);
   for (int j = 0; j < laws.free_at(of.node) && of.slope > 0; ++j)
     result += of.slope * sets.direction(j, of.node) * row[laws.tangent[of.node] + j];
@@ -97,11 +97,11 @@ Solved System::step_nearby(const LazyColumns &h, const Vector &q, const NodeLaws
     sides(of, k) = -scale[of] * along(list[now], point.w);
   }
   for (Index j = 0; j < a; ++j) {
-    const Vector moved = unit[j] * moved_by(h, laws, to, list[added[j]]);
+    const MovedBy moved(h, laws, to, list[added[j]]);
     for (const auto &[of, now] : kept)
-      sides(of, j) = scale[of] * along(list[now], moved);
+      sides(of, j) = scale[of] * unit[j] * along(list[now], moved);
     for (Index i = 0; i < a; ++i)
-      schur(i, j) = unit[i] * along(list[added[i]], moved);
+      schur(i, j) = unit[i] * unit[j] * along(list[added[i]], moved);
     schur(j, j) += list[added[j]].curvature * unit[j] * unit[j];
   }
   for (Index j = 0; j < r; ++j)
@@ -110,10 +110,10 @@ Solved System::step_nearby(const LazyColumns &h, const Vector &q, const NodeLaws
   for (Index i = 0; i < a; ++i) {
     Unknown of_row = list[added[i]];
     of_row.slope = 0;
-    const Vector row = unit[i] * moved_by(h, laws, to, of_row);
+    const MovedBy row(h, laws, to, of_row);
     Vector entries = Vector::Zero(n);
     for (const auto &[of, now] : kept)
-      entries[of] = unit_[of] * entry(list[now], row, laws, to);
+      entries[of] = unit_[of] * unit[i] * entry(list[now], row, laws, to);
     schur.row(i) -= entries.transpose() * found.leftCols(k);
     right[i] = -unit[i] * along(list[added[i]], point.w) - entries.dot(found.col(k));
   }

@@ -168,15 +168,18 @@ double unit_of(const Unknown &unknown, const Vector &diagonal, const NodeLaws &l
                            : tangential_diagonal(diagonal, laws, unknown.node));
 }
 
-Vector moved_by(const LazyColumns &h, const NodeLaws &laws, const ActiveSets &sets,
-                const Unknown &unknown) {
-  Vector moved = unknown.a * h.column(unknown.first);
-  if (unknown.b != 0) moved += unknown.b * h.column(unknown.second);
+MovedBy::MovedBy(const LazyColumns &h, const NodeLaws &laws, const ActiveSets &sets,
+                 const Unknown &unknown) {
+  add(unknown.a, h, unknown.first);
+  if (unknown.b != 0) add(unknown.b, h, unknown.second);
   if (unknown.slope > 0)
     for (int j = 0; j < laws.free_at(unknown.node); ++j)
-      moved += unknown.slope * sets.direction(j, unknown.node) *
-               h.column(laws.tangent[unknown.node] + j);
-  return moved;
+      add(unknown.slope * sets.direction(j, unknown.node), h, laws.tangent[unknown.node] + j);
+}
+
+void MovedBy::add(double factor, const LazyColumns &h, Index column) {
+  columns_[count_] = h.entries(column);
+  factors_[count_++] = factor * h.factor();
 }
 
 System::System(const LazyColumns &h, const NodeLaws &laws, ActiveSets sets)
@@ -209,7 +212,7 @@ void System::assemble(const LazyColumns &h, const NodeLaws &laws) {
   const Index count = std::ssize(list_);
   matrix_.resize(count, count);
   for (Index k = 0; k < count; ++k) {
-    const Vector moved = moved_by(h, laws, sets_, list_[k]);
+    const MovedBy moved(h, laws, sets_, list_[k]);
     for (Index r = 0; r < count; ++r)
       matrix_(r, k) = unit_[k] * unit_[r] * along(list_[r], moved);
     matrix_(k, k) += list_[k].curvature * unit_[k] * unit_[k];

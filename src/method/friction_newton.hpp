@@ -92,12 +92,30 @@ struct Unknown {
 std::vector<Unknown> unknowns(const NodeLaws &laws, const ActiveSets &sets);
 /// What scales the diagonal of H to one in its row.
 double unit_of(const Unknown &unknown, const Vector &diagonal, const NodeLaws &laws);
-/// What a unit of the unknown adds to w, but for its curvature.
-Vector moved_by(const LazyColumns &h, const NodeLaws &laws, const ActiveSets &sets,
-                const Unknown &unknown);
-/// The row of an unknown times a vector of all rows.
-inline double along(const Unknown &row, const Vector &vector) {
-  return row.a * vector[row.first] + row.b * vector[row.second];
+/// What a unit of an unknown adds to w, but for its curvature, at any row: a combination of at most
+/// four columns of H, which must outlive it.
+class MovedBy {
+public:
+  MovedBy(const LazyColumns &h, const NodeLaws &laws, const ActiveSets &sets,
+          const Unknown &unknown);
+  double operator[](Index row) const {
+    double sum = factors_[0] * columns_[0][row];
+    for (std::size_t k = 1; k < count_; ++k)
+      sum += factors_[k] * columns_[k][row];
+    return sum;
+  }
+
+private:
+  void add(double factor, const LazyColumns &h, Index column);
+
+  std::array<const double *, 4> columns_{};
+  std::array<double, 4> factors_{};
+  std::size_t count_ = 0;
+};
+/// The row of an unknown times what there is at all rows, a Vector or MovedBy.
+template <class Rows> double along(const Unknown &row, const Rows &rows) {
+  if (row.b == 0) return row.a * rows[row.first];
+  return row.a * rows[row.first] + row.b * rows[row.second];
 }
 /// The part of x that no unknown changes: what bounds of slipping nodes have at x_n = 0.
 Vector fixed_part(const NodeLaws &laws, const ActiveSets &sets);

@@ -21,9 +21,10 @@ public:
   /// size or not finite.
   void require(const std::vector<Index> &which);
   bool has(Index i) const { return slot(i) >= 0; }
-  auto column(Index i) const {
-    return factor_ * Eigen::Map<const Vector>(data_ + slot(i) * size(), size());
-  }
+  auto column(Index i) const { return factor_ * Eigen::Map<const Vector>(entries(i), size()); }
+  /// Those of column i, without the factor.
+  const double *entries(Index i) const { return data_ + slot(i) * size(); }
+  double factor() const { return factor_; }
   Index size() const { return diagonal_.size(); }
   /// H_jj; 0 where column j is not there.
   const Vector &diagonal() const { return diagonal_; }

@@ -1,5 +1,6 @@
 #include "rbvi/mor/reduce.hpp"
 
+#include "balancing_functions.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/variants.hpp"
@@ -98,27 +99,6 @@ StageRow pod_row(const ReduceOptions &options, const Reduction *made) {
   return {stage::pod, "N = " + counted(bases.modes, "mode") + ", error " + short_number(error)};
 }
 
-/// Of bodies that contact alone holds, at the training parameters: with them in the space the
-/// forces of its answers balance to round-off. Collective.
-void add_rigid_motions(Problem &problem, const std::vector<Sample> &samples, LinearBasis &basis) {
-  constexpr double outside = 1e-8;
-  constexpr int enough = 3; // samples in a row that add none
-  if (problem.free_bodies().empty()) return;
-  const Mat layout = problem.v_product();
-  int without = 0;
-  for (std::size_t p = 0; p < samples.size() && without < enough; ++p) {
-    const auto motions = rigid_motions(problem.free_bodies(), problem.scene(),
-                                       expand(problem.scene().parameters, samples[p].mu),
-                                       problem.mesh(), problem.dofs());
-    Matrix columns(std::ssize(problem.dofs().natural_owned), std::ssize(motions));
-    for (Index k = 0; k < columns.cols(); ++k)
-      columns.col(k) = local_values(motions[k].get());
-    const bool added =
-        !append_orthonormalised(basis, dense_like(layout, columns).get(), outside).empty();
-    without = added ? 0 : without + 1;
-  }
-}
-
 } // namespace
 
 void add_modes(Problem &problem, const std::vector<Sample> &samples, const PodOptions &options,
@@ -131,7 +111,7 @@ void add_modes(Problem &problem, const std::vector<Sample> &samples, const PodOp
   }
   bases.pod = pod(snapshots, problem.v_product(), options);
   const PetscInt modes = bases.pod.basis.size();
-  add_rigid_motions(problem, samples, bases.pod.basis);
+  add_balancing_functions(problem, samples, bases.pod.basis);
   std::vector<double> &error = bases.pod.error; // what is left of the snapshots is as before
   error.insert(error.begin() + modes, static_cast<std::size_t>(bases.pod.basis.size() - modes),
                error[static_cast<std::size_t>(modes)]);

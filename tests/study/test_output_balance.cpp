@@ -126,6 +126,34 @@ TEST(NamedOutputs, AReactionIsInBalanceInAPoorModel) {
   EXPECT_GT(*outputs.reaction, 0.1);
 }
 
+/// Where springs and weight act, too, it is of stored rows, and the translation is a function of
+/// the basis.
+TEST(NamedOutputs, AReactionBesideSpringsIsInBalanceInAPoorModel) {
+  const Scene scene =
+      pressed("imposed: {top: {at: top, uy: -d*(1 + x)}}\n"
+              "loads: {weight: {at: all, force: [0, -x*d]}}\n"
+              "springs: {side: {at: contact, direction: [0, 1], stiffness: 5}, hold: "
+              "{at: contact, direction: [1, 0], stiffness: 8, pretension: d}}\n",
+              "  up: {reaction: [0, 1], at: top}\n  side: {spring: side}\n"
+              "  sunk: {integral: uy, in: all}\n",
+              "plane_strain");
+  const Mu mu{0.047, 13};
+  Reduced made(scene, "grid:1,1");
+  ReduceOptions poor;
+  poor.pod.tolerance = 0.05;
+  poor.condensed.responses = 0;
+  made.reduce(poor);
+  const Outputs full = HighFidelity(made.problem, {}).solve(mu).outputs;
+  std::map<std::string, double> exact = values_of(full);
+  EXPECT_NEAR(exact["up"] + *full.reaction - exact["side"], 0.25 * mu[0], 1e-10);
+  if (rank_of(PETSC_COMM_WORLD) != 0) return;
+  OnlineSolver online(made.model);
+  const Outputs outputs = online.outputs(mu, online.solve(mu));
+  std::map<std::string, double> found = values_of(outputs);
+  EXPECT_GT(std::abs(found["sunk"] - exact["sunk"]), 1e-6 * std::abs(exact["sunk"])) << "is poor";
+  EXPECT_NEAR(found["up"] + *outputs.reaction - found["side"], 0.25 * mu[0], 1e-10);
+}
+
 /// Of several boundaries they are of stored rows: what wrong rows leave of their balance is
 /// kept and said.
 TEST(NamedOutputs, ReactionsOfAModelThatAreNotInBalanceAreNamed) {
