@@ -236,7 +236,8 @@ Vector EvaluatedContact::moved_by(const BodyAtMu &body, const Vector &forces) co
 void EvaluatedContact::move(const BodyAtMu &body, ReducedAnswer &answer) const {
   answer.reaction = b_.transpose() * answer.lambda;
   answer.u = moved_by(body, answer.reaction);
-  if (compliance_) answer.beyond_basis = compliance_->displaced_by(answer.reaction) - trace_ * answer.u;
+  if (compliance_)
+    answer.beyond_basis = compliance_->displaced_by(answer.reaction) - trace_ * answer.u;
 }
 
 std::unique_ptr<ReducedContact> reduced_contact(const ReducedModel &model, const Scene &scene,
