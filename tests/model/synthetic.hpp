@@ -134,7 +134,8 @@ inline ReducedModel random_model(const Sizes &sizes, unsigned seed, const Scene 
   model.body.f = random_terms(random, n, sizes.f, 1);
   model.contact.g = random_terms(random, r, sizes.g, 1);
   const Vector b = model.contact.b.reduced.rowwise().sum();
-  const Vector u = a.llt().solve(model.body.f.reduced.rowwise().sum());
+  const Matrix &loads = model.body.f.reduced;
+  const Vector u = a.llt().solve(loads * Vector::Ones(loads.cols()));
   const double violation = (Eigen::Map<const Matrix>(b.data(), r, n) * u).norm();
   model.contact.g.reduced = model.contact.g.reduced.cwiseAbs();
   if (violation > 0)
