@@ -61,7 +61,12 @@ bool is_there(const std::string &name, Place place, const Scene &scene) {
   return is_one_of(field::u, field::u) ? membrane : is_one_of(field::x, field::z) || !membrane;
 }
 
-/// Throws bad_input where a parameter or a let is called like a field, and outputs name fields.
+Error is_a_field(const std::string &name) {
+  return bad_input("in outputs '" + name +
+                   "' is the field of that name: call the parameter otherwise");
+}
+
+/// Throws bad_input where a parameter is called like a field, and outputs name fields.
 void check_names(const Reader &reader) {
   const auto names_fields = [](const auto &output) {
     const auto &[name, node] = output;
@@ -72,14 +77,13 @@ void check_names(const Reader &reader) {
   };
   if (std::ranges::none_of(section(reader, "outputs").entries, names_fields)) return;
   for (const std::string &name : output_fields())
-    if (std::ranges::find(reader.parameters, name) != reader.parameters.end() ||
-        std::ranges::find(reader.lets, name, &Let::name) != reader.lets.end())
-      throw bad_input("in outputs '" + name +
-                      "' is the field of that name: call the parameter otherwise");
+    if (std::ranges::find(reader.parameters, name) != reader.parameters.end())
+      throw is_a_field(name);
 }
 
-/// Throws bad_input for a field that is not there.
-void check_fields(const Scene &scene, const OutputForm &form, const Expression &value) {
+/// Throws bad_input for a field that is not there, and where a let is called like one.
+void check_fields(const Reader &reader, const Scene &scene, const OutputForm &form,
+                  const Expression &value) {
   for (const std::string &name : value.free_names()) {
     if (std::ranges::find(output_fields(), name) == output_fields().end()) continue;
     if (!is_there(name, form.place, scene))
@@ -92,6 +96,8 @@ void check_fields(const Scene &scene, const OutputForm &form, const Expression &
           "strain_energy over boundaries, regions and at points of elastic bodies, slope_x and "
           "slope_y likewise of a membrane, which has no tangential, slip and stick; u is that of a "
           "membrane, ux and uy of others; z, uz, nz, sigma_yz and sigma_xz are of solids");
+    if (std::ranges::find(reader.lets, name, &Let::name) != reader.lets.end())
+      throw is_a_field(name);
   }
 }
 
@@ -150,7 +156,7 @@ void put_values(Reader &reader, const CaseNode &node, const CaseNode &value, con
   if (measures && where != nullptr)
     throw bad_input("a measure is that of its condition: write 'A and B' in place of 'where'");
   for (const CaseNode *given : {&value, where})
-    if (given != nullptr) check_fields(scene, form, expression_in(reader, *given));
+    if (given != nullptr) check_fields(reader, scene, form, expression_in(reader, *given));
   form.conditional = measures || where != nullptr;
   const Formula formula =
       formula_of(reader, {measures ? one : of, measures           ? of
