@@ -102,12 +102,9 @@ private:
 
 /// Adds a multiple of the sum of all functions of normal rows that leaves none of these below zero.
 bool raise(const ColumnSource &columns, const std::vector<int> &own, const NodeLaws &laws,
-           double roundoff, Lifting &lifting) {
+           const std::vector<bool> &is_normal, double roundoff, Lifting &lifting) {
   const auto least = [&] { return lifting.left(laws.normal).minCoeff(); };
   if (least() >= -roundoff) return true;
-  std::vector<bool> is_normal(own.size(), false);
-  for (const Index row : laws.normal)
-    is_normal[row] = true;
   const Pairs all = pairs_of(own, [&](Index row) { return is_normal[row]; });
   const Vector sum = columns(all.functions).rowwise().sum();
   double raised = 0;
@@ -162,6 +159,9 @@ std::optional<Lifting> lift(const ColumnSource &columns, Index count, const std:
                             const Vector &s, const Vector &multiplier, const NodeLaws &laws,
                             double roundoff) {
   constexpr int most_rounds = 10;
+  std::vector<bool> is_normal(own.size(), false);
+  for (const Index row : laws.normal)
+    is_normal[row] = true;
   Wanted wanted(columns, s.size());
   const FirstRows first(s, multiplier, laws, roundoff);
   const Pairs near = wanted.more(own, [&](Index row) { return first.is_asked(row); });
@@ -171,15 +171,13 @@ std::optional<Lifting> lift(const ColumnSource &columns, Index count, const std:
       wanted.add(row, near.functions[k], of_near.col(k));
   Lifting lifting = wanted.lifting(s, count);
   for (int round = 0; round < most_rounds; ++round) {
-    std::vector<bool> below(own.size(), false);
-    for (const Index row : laws.normal)
-      below[row] = lifting.left[row] < -roundoff;
-    const Pairs more = wanted.more(own, [&](Index row) { return below[row]; });
-    if (more.rows.empty()) break;
-    wanted.add(more);
+    const Pairs below = wanted.more(
+        own, [&](Index row) { return is_normal[row] && lifting.left[row] < -roundoff; });
+    if (below.rows.empty()) break;
+    wanted.add(below);
     lifting = wanted.lifting(s, count);
   }
-  if (!lifting.weights.allFinite() || !raise(columns, own, laws, roundoff, lifting))
+  if (!lifting.weights.allFinite() || !raise(columns, own, laws, is_normal, roundoff, lifting))
     return std::nullopt;
   for (const Index row : laws.normal)
     lifting.left[row] = std::max(0.0, lifting.left[row]);
