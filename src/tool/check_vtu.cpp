@@ -74,7 +74,7 @@ Grid partners_of(const Scene &scene, ContactInterface &interface, const FullMu &
   const auto named = [&](const std::string &name) {
     return std::ranges::find(grid.of_nodes, name, &Field::name);
   };
-  if (const auto moved = named("u"); moved != grid.of_nodes.end())
+  if (const auto moved = named("u"); moved != grid.of_nodes.end() && mesh.components > 1)
     for (Index i = 0; i < grid.points.rows(); ++i)
       grid.points.row(i) += moved->values.segment(3 * i, grid.points.cols()).transpose();
   grid.of_nodes = {*named("gap"), *named("normal"), *named("to_partner")};

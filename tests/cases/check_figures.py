@@ -137,8 +137,11 @@ def check_case(check, path):
     files = list(path.parent.glob("u_partners*.vtu"))
     check.that(len(files) == PLACES[name] and len(words.splitlines()) == min(3, len(files)),
                f"{name}: {len(files)} places, {words}")
+    size = np.ptp(read_grid(path.parent / "u_mesh.vtu").points, axis=0).max()
     for file in files:
-        check_partners(check, read_grid(file), file)
+        grid = read_grid(file)
+        check_partners(check, grid, file)
+        check.that(np.ptp(grid.points, axis=0).max() < 1.5 * size, f"{file}: is larger than the mesh")
     surface = read_grid(path.parent / "u_surface.vtu")
     free = surface.of_cells["(free)"]
     check.that(np.any(free > 0) == (name != "membrane_obstacle"), f"{name}: what is free")
