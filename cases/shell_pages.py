@@ -68,6 +68,9 @@ Each can stand in the case file below \\fIoptions:\\fR, too. Options of a case:
 128 + signal: it was stopped, and the same command goes on.
 """
 
+# The option of a command that reads no case.
+WITHOUT_CASE = {"compare": "-csv", "new": "-mesh"}
+
 
 def completion(dump):
     def rows(cases):
@@ -75,7 +78,7 @@ def completion(dump):
 
     choices = [("-" + option["name"], [choice["name"] for choice in option["choices"]], "; return")
                for option in dump["options"] if option["choices"]]
-    options = [(command["name"], ["-" + name for name in command["options"]] or ["-help"], "")
+    options = [(command["name"], ["-" + name for name in command["options"]] or [WITHOUT_CASE.get(command["name"], "-help")], "")
                for command in dump["commands"]]
     return COMPLETION.format(commands=" ".join(command["name"] for command in dump["commands"]),
                              choices=rows(choices), options=rows(options),

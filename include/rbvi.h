@@ -78,6 +78,8 @@ typedef struct rbvi_output {
 RBVI_API size_t rbvi_parameter_count(const rbvi_model *model);
 RBVI_API size_t rbvi_output_count(const rbvi_model *model);
 RBVI_API rbvi_status rbvi_parameter_at(const rbvi_model *model, size_t i, rbvi_parameter *parameter);
+/* The value of parameter i that a text says: a number, or the name of a choice. */
+RBVI_API rbvi_status rbvi_value(const rbvi_model *model, size_t i, const char *text, double *value);
 RBVI_API rbvi_status rbvi_output_at(const rbvi_model *model, size_t i, rbvi_output *output);
 /* What parameters have to meet together, one line each: "condition: why". */
 RBVI_API size_t rbvi_requirement_count(const rbvi_model *model);

@@ -201,6 +201,17 @@ rbvi_status rbvi_parameter_at(const rbvi_model *model, size_t i, rbvi_parameter 
   });
 }
 
+rbvi_status rbvi_value(const rbvi_model *model, size_t i, const char *text, double *value) {
+  return with_model(model, [&](const SharedModel &of) {
+    const ParameterSpace &space = of.model().scene.parameters;
+    if (i >= static_cast<size_t>(space.size()))
+      throw bad_input("the model has no parameter of this number");
+    const Parameter &parameter = space.at(static_cast<int>(i));
+    there(value, "the value") =
+        parse_value(parameter, &there(text, "the text"), "parameter " + parameter.name);
+  });
+}
+
 rbvi_status rbvi_output_at(const rbvi_model *model, size_t i, rbvi_output *output) {
   return with_model(model, [&](const SharedModel &of) {
     if (i >= of.columns().size()) throw bad_input("the model has no output of this number");

@@ -52,7 +52,9 @@ std::vector<Mu> corners_and_faces(const ParameterSpace &space) {
     for (const Mu *side : {&low, &high}) {
       Mu mu;
       for (std::size_t j = 0; j < low.size(); ++j)
-        mu.push_back(j == i ? (*side)[j] : std::fma(0.5, high[j] - low[j], low[j])); // as a grid
+        mu.push_back(
+            j == i ? (*side)[j] // as a grid
+                   : taken(space.at(static_cast<int>(j)), std::fma(0.5, high[j] - low[j], low[j])));
       set.push_back(mu);
     }
   return set;

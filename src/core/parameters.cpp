@@ -18,14 +18,17 @@ std::optional<std::size_t> find_any(const ParameterSpace &space, const std::stri
   return static_cast<std::size_t>(found - space.all.begin());
 }
 
-/// Throws bad_input that says in which unit the number is.
-double value_of(const Parameter &parameter, const std::string &text, const std::string &what) {
-  try {
-    return parse_number(text, what);
-  } catch (const Error &error) {
-    if (parameter.unit.empty()) throw;
-    throw bad_input(std::string(error.what()).append("; give it in ").append(parameter.unit));
-  }
+/// Throws bad_input where a choice has no such value.
+void check_choice(const Parameter &parameter, double value) {
+  if (!parameter.choices.empty() && value != taken(parameter, value))
+    throw bad_input("parameter " + parameter.name + " is one of " + joined(parameter.choices) +
+                    " (0 to " + std::to_string(parameter.choices.size() - 1) + "), not " +
+                    shortest_number(value));
+}
+
+std::string text_of(const Parameter &parameter, double value) {
+  const bool named = !parameter.choices.empty() && value == taken(parameter, value);
+  return named ? parameter.choices[static_cast<std::size_t>(value)] : shortest_number(value);
 }
 
 Mu parse_named(const ParameterSpace &space, const std::vector<std::string> &entries) {
@@ -43,12 +46,32 @@ Mu parse_named(const ParameterSpace &space, const std::vector<std::string> &entr
     if (given[*i]) throw bad_input("parameter '" + name + "' is given twice");
     given[*i] = true;
     mu[*i] =
-        value_of(space.at(static_cast<int>(*i)), entry.substr(equals + 1), "parameter " + name);
+        parse_value(space.at(static_cast<int>(*i)), entry.substr(equals + 1), "parameter " + name);
   }
   return mu;
 }
 
 } // namespace
+
+double taken(const Parameter &parameter, double value) {
+  if (parameter.choices.empty()) return value;
+  return std::clamp(std::round(value), 0.0, static_cast<double>(parameter.choices.size() - 1));
+}
+
+double parse_value(const Parameter &parameter, const std::string &text, const std::string &what) {
+  const auto named = std::ranges::find(parameter.choices, trimmed(text));
+  if (named != parameter.choices.end())
+    return static_cast<double>(named - parameter.choices.begin());
+  try {
+    return parse_number(text, what);
+  } catch (const Error &error) {
+    if (!parameter.choices.empty())
+      throw bad_input(what + " is '" + trimmed(text) + "': it is one of " +
+                      joined(parameter.choices));
+    if (parameter.unit.empty()) throw;
+    throw bad_input(std::string(error.what()).append("; give it in ").append(parameter.unit));
+  }
+}
 
 std::string names_of(const ParameterSpace &space) {
   std::string names;
@@ -157,6 +180,7 @@ void check_mu(const ParameterSpace &space, const Mu &mu, bool allow_outside) {
   for (std::size_t i = 0; i < mu.size(); ++i) {
     const Parameter &p = space.at(static_cast<int>(i));
     if (!std::isfinite(mu[i])) throw bad_input("parameter " + p.name + " is not finite");
+    check_choice(p, mu[i]);
     if (!allow_outside && !in_bounds(p, mu[i]))
       throw bad_input(p.name + " = " + shortest_number(mu[i]) + " is outside [" +
                       shortest_number(p.lower) + ", " + shortest_number(p.upper) + "]");
@@ -176,7 +200,7 @@ Mu parse_mu(const ParameterSpace &space, const std::string &text, bool allow_out
     for (std::size_t i = 0; i < entries.size(); ++i) {
       const std::string what = "value " + std::to_string(i + 1) + " of '" + text + "'";
       const bool has_place = static_cast<int>(i) < space.size(); // else there are too many
-      mu.push_back(has_place ? value_of(space.at(static_cast<int>(i)), entries[i], what)
+      mu.push_back(has_place ? parse_value(space.at(static_cast<int>(i)), entries[i], what)
                              : parse_number(entries[i], what));
     }
   }
@@ -187,7 +211,8 @@ Mu parse_mu(const ParameterSpace &space, const std::string &text, bool allow_out
 std::string describe(const ParameterSpace &space, const Mu &mu) {
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < mu.size(); ++i)
-    parts.push_back(space.at(static_cast<int>(i)).name + "=" + shortest_number(mu[i]));
+    parts.push_back(space.at(static_cast<int>(i)).name + "=" +
+                    text_of(space.at(static_cast<int>(i)), mu[i]));
   return joined(parts, " ");
 }
 

@@ -270,9 +270,8 @@ bool is_extreme(const OutputForm &output) {
 double output_value(const OutputForm &form, const OutputSums &sums) {
   switch (form.kind) {
   case OutputForm::Kind::integral:
+  case OutputForm::Kind::measure: // of one, in the unit of the output
     return sums.integral;
-  case OutputForm::Kind::measure:
-    return sums.measure;
   case OutputForm::Kind::mean:
     return sums.integral / sums.measure;
   case OutputForm::Kind::min:

@@ -55,6 +55,10 @@ Generator grid(const ParameterSpace &space, const std::string &text) {
   double total = 1;
   for (int i = 0; i < space.size(); ++i) {
     counts.push_back(parse_count(entries[i], "grid count of " + space.at(i).name));
+    if (const auto &choices = space.at(i).choices;
+        !choices.empty() && counts.back() > std::ssize(choices))
+      throw bad_input("grid:" + text + " has " + std::to_string(counts.back()) + " values of " +
+                      space.at(i).name + ", which has " + std::to_string(choices.size()));
     total *= counts.back();
   }
   if (total > largest_set)
@@ -65,8 +69,9 @@ Generator grid(const ParameterSpace &space, const std::string &text) {
     Mu mu(counts.size());
     long rest = k++;
     for (std::size_t i = counts.size(); i-- > 0; rest /= counts[i])
-      mu[i] = at_fraction(space.at(static_cast<int>(i)),
-                          counts[i] == 1 ? 0.5 : double(rest % counts[i]) / (counts[i] - 1));
+      mu[i] = taken(space.at(static_cast<int>(i)),
+                    at_fraction(space.at(static_cast<int>(i)),
+                                counts[i] == 1 ? 0.5 : double(rest % counts[i]) / (counts[i] - 1)));
     return mu;
   };
 }
@@ -78,6 +83,12 @@ std::uint64_t next_random(std::uint64_t &state) {
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
   return z ^ (z >> 31);
+}
+
+/// Choices are as likely as each other.
+double random_value(const Parameter &p, double t) {
+  if (p.choices.empty()) return at_fraction(p, t);
+  return std::min(p.upper, p.lower + std::floor(t * (p.upper - p.lower + 1)));
 }
 
 Generator random_set(const ParameterSpace &space, const std::string &text) {
@@ -93,7 +104,7 @@ Generator random_set(const ParameterSpace &space, const std::string &text) {
     Mu mu;
     for (int i = 0; i < space.size(); ++i)
       mu.push_back(
-          at_fraction(space.at(i), static_cast<double>(next_random(state) >> 11) * 0x1p-53));
+          random_value(space.at(i), static_cast<double>(next_random(state) >> 11) * 0x1p-53));
     return mu;
   };
 }
@@ -201,7 +212,8 @@ private:
     for (std::size_t k = 0; k < columns_.size(); ++k)
       if (columns_[k])
         mu[*columns_[k]] =
-            parse_number(entries[k], "parameter " + space_.at(static_cast<int>(*columns_[k])).name);
+            parse_value(space_.at(static_cast<int>(*columns_[k])), entries[k],
+                        "parameter " + space_.at(static_cast<int>(*columns_[k])).name);
     return mu;
   }
 

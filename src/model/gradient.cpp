@@ -49,6 +49,10 @@ OutputGradient gradient_of(OnlineSolver &solver, const Mu &mu, const ReducedAnsw
   OutputGradient result{Matrix::Zero(std::ssize(columns), space.size()),
                         std::vector<bool>(static_cast<std::size_t>(space.size()), false)};
   for (int p = 0; p < space.size(); ++p) {
+    if (!space.at(p).choices.empty()) {
+      result.values.col(p).setConstant(unknown);
+      continue;
+    }
     const auto [step, terms] = quotient_at(space.at(p), mu[p]);
     for (const auto &[steps, weight] : terms) {
       Mu moved = mu;

@@ -167,8 +167,10 @@ Scene in_box_of(const Scene &stored, Scene scene) {
     throw bad_input("the parameters of the model are not those of scene " + stored.name +
                     " in this build");
   const ParameterSpace of_scene = std::exchange(scene.parameters, stored.parameters);
-  for (std::size_t i = 0; i < of_scene.all.size(); ++i)
+  for (std::size_t i = 0; i < of_scene.all.size(); ++i) {
     scene.parameters.all[i].valid = of_scene.all[i].valid;
+    scene.parameters.all[i].choices = of_scene.all[i].choices;
+  }
   scene.name = stored.name;
   check_box(scene);
   return scene;

@@ -1,5 +1,6 @@
 #include "rbvi/model/print.hpp"
 
+#include "rbvi/core/output_units.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/model/law_solver.hpp"
 #include "rbvi/model/self_check.hpp"
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <iomanip>
 #include <sstream>
+#include <utility>
 
 namespace rbvi {
 
@@ -52,7 +54,9 @@ void print_parameters(std::ostream &out, const ParameterSpace &space) {
     const bool is_free =
         std::find(space.free.begin(), space.free.end(), static_cast<int>(i)) != space.free.end();
     label(out, i == 0 ? "parameters" : "") << std::setw(int{label_width}) << p.name;
-    if (is_free)
+    if (is_free && !p.choices.empty())
+      out << joined(p.choices, " or ");
+    else if (is_free)
       out << '[' << p.lower << ", " << p.upper << ']';
     else
       out << p.value << " (fixed)";
@@ -79,7 +83,8 @@ void print_terms_of_rows(std::ostream &out, int terms, const TermsApart &apart) 
 void print_law(std::ostream &out, const NodalLaw &law, int multipliers) {
   label(out, "condensed operator")
       << multipliers << " x " << multipliers << ", " << law.condensed.terms.cols() << " terms";
-  if (!law.condensed.grid.axes.empty()) out << " (interpolation error " << law.condensed.error << ')';
+  if (!law.condensed.grid.axes.empty())
+    out << " (interpolation error " << law.condensed.error << ')';
   out << '\n';
 }
 
@@ -111,6 +116,22 @@ void print_failed(std::ostream &out, const ReducedModel &model) {
   if (failed.size() > most) label(out, "") << "and " << failed.size() - most << " more\n";
 }
 
+/// Name, unit, the largest error that was measured, and what it is; checks of an answer left out.
+void print_columns(std::ostream &out, const ReducedModel &model) {
+  const ErrorOfOutput errors = errors_of_outputs(model);
+  bool first = true;
+  for (const OutputColumn &column : columns_of_model(model)) {
+    if (column.kind == OutputKind::check) continue;
+    const std::string unit = unit_of(model.scene, column), says = says_of(model.scene, column);
+    label(out, std::exchange(first, false) ? "outputs" : "") << column.name;
+    if (!unit.empty()) out << " (" << unit << ')';
+    if (!says.empty()) out << ": " << says;
+    if (const auto found = errors.find(column.name); found != errors.end())
+      out << "; largest error " << short_number(found->second);
+    out << '\n';
+  }
+}
+
 } // namespace
 
 void print_expected_errors(std::ostream &out, const ReducedModel &model) {
@@ -121,6 +142,7 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   label(out, "scene") << model.scene.name << '\n';
   label(out, "options") << names_and_values(model.scene.options) << '\n';
   print_parameters(out, model.scene.parameters);
+  print_columns(out, model);
   print_failed(out, model);
   label(out, "modes") << model.body.modes << '\n';
   const bool joined = model.contact.law && !model.contact.law->on_functions();

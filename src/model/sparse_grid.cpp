@@ -17,13 +17,29 @@ bool is_wide(const Parameter &parameter) {
 } // namespace
 
 double coordinate_at(const Scene &scene, int parameter, double value) {
+  const auto choices = static_cast<int>(scene.parameters.all[parameter].choices.size());
+  if (choices > 0) return leja_points(choices)[static_cast<Index>(value)];
   if (const Coordinate *own = coordinate_of(scene, parameter)) return own->of(value);
   return is_wide(scene.parameters.all[parameter]) ? std::log(value) : value;
 }
 
 double value_back(const Scene &scene, int parameter, double coordinate) {
+  const auto choices = static_cast<int>(scene.parameters.all[parameter].choices.size());
+  if (choices > 0) {
+    Index nearest = 0;
+    (leja_points(choices).array() - coordinate).abs().minCoeff(&nearest);
+    return static_cast<double>(nearest);
+  }
   if (const Coordinate *own = coordinate_of(scene, parameter)) return own->back(coordinate);
   return is_wide(scene.parameters.all[parameter]) ? std::exp(coordinate) : coordinate;
+}
+
+GridAxis axis_of(const Scene &scene, int parameter) {
+  const Parameter &p = scene.parameters.all[parameter];
+  if (!p.choices.empty()) return {parameter, -1, 1, static_cast<int>(p.choices.size())};
+  const auto [lower, upper] = std::minmax(
+      {coordinate_at(scene, parameter, p.lower), coordinate_at(scene, parameter, p.upper)});
+  return {parameter, lower, upper};
 }
 
 Index SparseGrid::size() const {
@@ -55,7 +71,7 @@ FullMu parameters_at(const Scene &scene, const SparseGrid &grid, const GridPoint
                      const FullMu &all_parameters) {
   FullMu all = all_parameters;
   for (std::size_t d = 0; d < grid.axes.size(); ++d) {
-    const auto &[parameter, lower, upper] = grid.axes[d];
+    const auto &[parameter, lower, upper, most] = grid.axes[d];
     const double x = (lower + upper) / 2 + (upper - lower) / 2 * grid.abscissae[point[d]];
     all[parameter] = value_back(scene, parameter, x);
   }
@@ -66,7 +82,7 @@ Vector grid_functions(const Scene &scene, const SparseGrid &grid, const FullMu &
   const Index axes = std::ssize(grid.axes), count = grid.abscissae.size();
   Vector functions = Vector::Ones(grid.size());
   for (Index d = 0; d < axes; ++d) {
-    const auto &[parameter, lower, upper] = grid.axes[d];
+    const auto &[parameter, lower, upper, most] = grid.axes[d];
     const double coordinate = coordinate_at(scene, parameter, all_parameters[parameter]);
     const double x = (2 * coordinate - lower - upper) / (upper - lower);
     Vector along = Vector::Ones(count);

@@ -32,12 +32,8 @@ constexpr int most_responses = 200; ///< factorisations
 /// The free parameters of A over its common coefficient.
 std::vector<GridAxis> axes_of(const Scene &scene) {
   std::vector<GridAxis> axes;
-  for (const int i : parameters_beside_common(scene.a, scene.parameters)) {
-    const Parameter &p = scene.parameters.all[i];
-    const auto [lower, upper] =
-        std::minmax({coordinate_at(scene, i, p.lower), coordinate_at(scene, i, p.upper)});
-    axes.push_back({i, lower, upper});
-  }
+  for (const int i : parameters_beside_common(scene.a, scene.parameters))
+    axes.push_back(axis_of(scene, i));
   return axes;
 }
 
@@ -192,7 +188,7 @@ void interpolate(const Problem &problem, const CondensedLoads &loads, const Full
   const auto for_all_ranks = static_cast<std::size_t>(ranks_of(problem.comm()));
   const Scene &scene = problem.scene();
   condensed.grid = {axes_of(scene), leja_points(options.max_points), {}};
-  GrowingGrid growing(condensed.grid.axes.size(), Grows::interpolant);
+  GrowingGrid growing(condensed.grid.axes, Grows::interpolant);
   SpannedSurplus known(scene, condensed.grid, all, left_out * options.tolerance);
   Progress progress("points of the condensed operator", 0, rank_of(problem.comm()) == 0);
   while (true) {
@@ -218,6 +214,14 @@ void interpolate(const Problem &problem, const CondensedLoads &loads, const Full
   compress(known.columns(), known.coordinates(), loads.size * loads.size, options.tolerance,
            condensed);
   condensed.dofs = loads.units;
+  constexpr double useless = 1e-3;
+  if (condensed.error > std::max(useless, options.tolerance))
+    throw failure(
+        "the condensed operator is interpolated to " + short_number(condensed.error) + " only by " +
+        std::to_string(options.max_points) +
+        " points along a parameter of the stiffness, too coarse for a model: narrow its "
+        "bounds; one that switches between a few values is a choice (values: [ONE, OTHER] "
+        "in place of its range)");
   if (condensed.error > options.tolerance && rank_of(problem.comm()) == 0)
     std::fprintf(stderr,
                  "rbvi: warning: the condensed operator is interpolated to %.1e only by %d points "

@@ -59,13 +59,15 @@ void make_condensed(Reducing &at) {
 }
 
 StageNeed condensation_need(const ReductionSize &size) {
-  const auto &[samples, dofs, contact, multipliers, ranks, axes, points, square, entries, factor,
-               columns, factorisation, of_a, of_f, of_b, joined, modes, model, self_check] = size;
-  const bool varies = axes > 0;
-  const double factorisations = of_a > 0 ? points : std::min(points, span_factorisations);
-  return {.numbers = size.responses(columns) + (varies ? 6 : 2) * dofs * modes / ranks +
-                     square * (varies ? std::min(points, 3 * most_terms) : 3),
-          .seconds = factorisations * (factorisation + factor * columns / ranks * column_seconds)};
+  const bool varies = size.axes > 0;
+  const double factorisations =
+                   size.of_a > 0 ? size.points : std::min(size.points, span_factorisations),
+               basis = size.dofs * size.modes / size.ranks;
+  return {.numbers = size.responses(size.loads) + (varies ? 6 : 2) * basis +
+                     size.square * (varies ? std::min(size.points, 3 * most_terms) : 3),
+          .seconds = factorisations * (size.factorisation +
+                                       size.factor * size.loads / size.ranks * column_seconds) +
+                     1.5 * product_seconds * basis * size.modes};
 }
 
 /// The training multipliers that `project` has left in the model become what a query starts from.
@@ -157,7 +159,8 @@ Joining responses_join(const Scene &scene, const ReduceOptions &options,
     return {few_responses * (size.axes > 0 ? of_more : 1), stored};
   if (size.axes > 0)
     return {size.contact * (split_sum(scene.a, scene.parameters).mapped.empty() ? 1 : 4), stored};
-  return {size.contact / 2, stored};
+  const bool all = scene.components == 1; // of a membrane all that is beside the rim
+  return {size.contact * (all ? 1 : 0.5), stored};
 }
 
 } // namespace

@@ -45,8 +45,7 @@ std::map<GridPoint, double> GrowingGrid::candidates() const {
   for (const auto &[point, remainder] : taken_)
     for (std::size_t d = 0; d < axes_; ++d) {
       GridPoint after = point;
-      ++after[d];
-      add(after);
+      if (++after[d] < along_[d].most) add(after);
     }
   return result;
 }

@@ -17,7 +17,8 @@ enum class Grows {
 
 class GrowingGrid {
 public:
-  GrowingGrid(std::size_t axes, Grows grows) : axes_(axes), grows_(grows) {}
+  GrowingGrid(const std::vector<GridAxis> &axes, Grows grows)
+      : along_(axes), axes_(axes.size()), grows_(grows) {}
   /// `remainder`: what is missed at this point without it, relative.
   void take(const GridPoint &point, double remainder) { taken_[point] = remainder; }
   /// The points all of whose predecessors have been taken, with the remainder that is expected.
@@ -28,6 +29,7 @@ private:
   double of_coefficient(const GridPoint &point) const;
   double of_space(const GridPoint &point) const;
 
+  std::vector<GridAxis> along_;
   std::size_t axes_;
   Grows grows_;
   std::map<GridPoint, double> taken_;

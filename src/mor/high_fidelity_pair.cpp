@@ -16,6 +16,9 @@ namespace rbvi {
 
 namespace {
 
+constexpr double singular = 1e-10;          ///< of a singular value, relative to the largest
+constexpr double largest_tolerance = 0.999; ///< sigma never exceeds 1
+
 /// [V B^T; B 0], with the zeros of its diagonal, and [0 0; 0 W].
 struct SaddlePencil {
   Handle<Mat> k, m;
@@ -56,22 +59,20 @@ void factorise(EPS eps, Mat matrix) {
   RBVI_CALL(MatMumpsSetIcntl(factor, more_room, percent));
 }
 
-/// The size of the eigenvalue of a x = lambda m x that `eps` finds first.
-double eigenvalue(EPS eps, Mat a, Mat m, const std::string &of) {
+/// The size of the eigenvalue of a x = lambda m x that `eps` finds first, 0 up to the size `zero`.
+double eigenvalue(EPS eps, Mat a, Mat m, const std::string &of, double zero = 0) {
   RBVI_CALL(EPSSetOperators(eps, a, m));
   RBVI_CALL(EPSSolve(eps));
   PetscInt converged = 0;
   double value = 0;
   RBVI_CALL(EPSGetConverged(eps, &converged));
   if (converged > 0) RBVI_CALL(EPSGetEigenvalue(eps, 0, &value, nullptr));
+  if (converged > 0 && std::abs(value) <= zero) return 0;
   if (!(value < 0))
     throw failure("the iteration for " + of +
                   " did not converge: raise -infsup_eps_max_it or -infsup_eps_tol");
   return -value;
 }
-
-constexpr double singular = 1e-10;          ///< of a singular value, relative to the largest
-constexpr double largest_tolerance = 0.999; ///< sigma never exceeds 1
 
 /// Multipliers that face a partner everywhere.
 std::vector<Index> covered_multipliers(const Operators &op) {
@@ -122,8 +123,10 @@ PairConstants iterated_constants(KSP v, Mat b, Mat w) {
   RBVI_CALL(KSPSetErrorIfNotConverged(v, PETSC_TRUE));
   RBVI_CALL(EPSSetWhichEigenpairs(largest.get(), EPS_SMALLEST_REAL));
   factorise(largest.get(), w);
-  return {std::sqrt(eigenvalue(smallest.get(), pencil.k.get(), pencil.m.get(), "beta_HF")),
-          std::sqrt(eigenvalue(largest.get(), schur.get(), w, "c_HF"))};
+  const double c = eigenvalue(largest.get(), schur.get(), w, "c_HF");
+  const double beta = eigenvalue(smallest.get(), pencil.k.get(), pencil.m.get(), "beta_HF",
+                                 std::pow(singular, 2) * c); // of two obstacles on the same nodes
+  return {std::sqrt(beta), std::sqrt(c)};
 }
 
 bool iterates_constants(double multipliers, double dofs) {

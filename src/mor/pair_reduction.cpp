@@ -121,7 +121,11 @@ std::vector<ReductionStage> pair_of_spaces(const Scene &scene, const ReduceOptio
                         build_dual_basis(at.problem, reference_of(at.problem, at.options),
                                          at.multipliers, at.options.cone);
                   },
-                  [](const ReductionSize &size) { return StageNeed{generators_of(size)}; }});
+                  [](const ReductionSize &size) {
+                    return StageNeed{.numbers = generators_of(size),
+                                     .seconds = size.factorisation +
+                                                size.multipliers * size.factor * column_seconds};
+                  }});
   add_supremizer_stages(options, list);
   list.push_back({sweep_of_supremizers, sweep_of_supremizers_row});
   add_projection(scene, project_bases, list);

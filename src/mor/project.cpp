@@ -12,6 +12,7 @@
 #include "rbvi/mor/stiffness_change.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/columns.hpp"
+#include "rbvi/par/progress.hpp"
 #include "rounding.hpp"
 
 #include <algorithm>
@@ -201,7 +202,12 @@ void start_operators(const Problem &problem, const std::vector<Sample> &samples,
 void project_snapshots(Problem &problem, const std::vector<Sample> &samples,
                        const AffineOperators &affine, Mat basis, ReducedModel &model) {
   const bool with_a = model.body.a_change.rank() == 0;
-  for (const int p : sampled_snapshots(affine, with_a)) {
+  const std::vector<int> snapshots = sampled_snapshots(affine, with_a);
+  Progress progress("samples of operators projected", static_cast<int>(snapshots.size()),
+                    rank_of(problem.comm()) == 0);
+  int done = 0;
+  for (const int p : snapshots) {
+    progress.update(done++);
     const Operators &op = problem.assemble(samples[p].mu);
     if (with_a && uses(affine.a, p))
       accumulate(affine.a, p, project_stiffness(problem.a_terms().mapped.get(), basis),

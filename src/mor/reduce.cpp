@@ -88,7 +88,11 @@ StageRow interpolation_row(const Scene &scene, const ReduceOptions &options,
 }
 
 StageNeed interpolation_need(const ReductionSize &size) {
-  return {2 * ((size.of_a * size.entries / 2 + size.of_f * size.dofs) / size.ranks + size.of_b)};
+  constexpr double of_entry = 2.5e-7, of_load = 3e-6; // seconds, for an entry of a sample
+  return {.numbers =
+              2 * ((size.of_a * size.entries / 2 + size.of_f * size.dofs) / size.ranks + size.of_b),
+          .seconds =
+              (of_entry * size.of_a * size.entries + of_load * size.of_f * size.dofs) / size.ranks};
 }
 
 StageRow pod_row(const ReduceOptions &options, const Reduction *made) {
@@ -137,8 +141,11 @@ std::vector<ReductionStage> first_stages(const Scene &scene, void (*separates)(R
        },
        [](Reducing &at) { add_modes(at.problem, at.samples, at.options.pod, at.made.bases); },
        [](const ReductionSize &size) {
-         return StageNeed{4 * size.dofs * size.samples / size.ranks +
-                          6 * size.samples * size.samples};
+         constexpr double of_product = 1.4e-9, of_dof = 4e-6; // seconds
+         return StageNeed{
+             .numbers = 4 * size.dofs * size.samples / size.ranks + 6 * size.samples * size.samples,
+             .seconds =
+                 (of_product * size.samples * size.samples + of_dof) * size.dofs / size.ranks};
        },
        fewer_samples});
   return list;
@@ -168,7 +175,13 @@ void add_projection(const Scene &scene, void (*projects)(Reducing &),
                   [](const Scene &, const ReduceOptions &, const Reduction *) {
                     return StageRow{stage::projection, "the separated operators onto the bases"};
                   },
-                  projects, [](const ReductionSize &size) { return StageNeed{size.model}; }});
+                  projects,
+                  [](const ReductionSize &size) {
+                    return StageNeed{.numbers = size.model,
+                                     .seconds =
+                                         product_seconds * size.modes * size.modes *
+                                         (size.terms * size.dofs / size.ranks + size.multipliers)};
+                  }});
 }
 
 namespace {
@@ -241,9 +254,13 @@ void add_bounds(const ReduceOptions &options, std::vector<ReductionStage> &list)
                   [](const ReductionSize &size) {
                     if (size.contact > most_pushed_dofs) return StageNeed{};
                     const double loads = 3 * (size.modes + size.multipliers) + size.contact;
+                    const double references = size.axes > 0 ? 3 : 1;
                     return StageNeed{.numbers = 2 * size.dofs * loads / size.ranks + size.factor,
-                                     .seconds = size.factorisation +
-                                                size.factor * loads / size.ranks * column_seconds};
+                                     .seconds =
+                                         references * (size.factorisation +
+                                                       loads / size.ranks *
+                                                           (size.factor * column_seconds +
+                                                            product_seconds * loads * size.dofs))};
                   },
                   "-certify no"});
 }
@@ -300,8 +317,10 @@ const std::vector<std::string> &collocation_nodes_names() {
 
 const ReductionWay &way_of(const Scene &scene, MultiplierReduction chosen) {
   if (!has_multipliers(scene)) return nitsche_way;
+  // Where A is one matrix the operator behind the law costs one factorisation, and the law is
+  // exact.
   if (chosen == MultiplierReduction::automatic)
-    return keeps_nodes(scene) ? condensed_way : cone_way;
+    return keeps_nodes(scene) || constant_stiffness(scene) ? condensed_way : cone_way;
   const auto found = std::ranges::find(reduction_ways(), chosen, &ReductionWay::reduction);
   if (found == reduction_ways().end()) throw not_entered("-multiplier_reduction collocated");
   return *found;

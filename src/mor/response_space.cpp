@@ -128,7 +128,7 @@ ResponseSpace append_fields(Problem &problem, const FieldSource &source,
   const PetscInt before = basis.size();
   GrowingBasis growing(basis, problem.v_product());
   ResponseSpace result;
-  GrowingGrid reached(axes.size(), Grows::space);
+  GrowingGrid reached(axes, Grows::space);
   std::mt19937 generator(1); // the same on every rank
   double scale = 0;
   Index expected = 0;

@@ -207,7 +207,12 @@ void add_supremizer_stages(const ReduceOptions &options, std::vector<ReductionSt
                                                       : "one factorisation of V for all mu"};
                   },
                   make_riesz,
-                  [](const ReductionSize &size) { return StageNeed{generators_of(size)}; }});
+                  [](const ReductionSize &size) {
+                    return StageNeed{.numbers = generators_of(size),
+                                     .seconds = size.factorisation + size.joined * size.factor /
+                                                                         size.ranks *
+                                                                         column_seconds};
+                  }});
   if (options.infsup_tolerance && options.enrichment == Enrichment::offline)
     list.push_back({stage::infsup_tolerance,
                     [](const Scene &, const ReduceOptions &, const Reduction *made) {
@@ -225,8 +230,10 @@ void add_supremizer_stages(const ReduceOptions &options, std::vector<ReductionSt
                                            : size.factor + 4 * size.contact * size.contact};
                     }});
   list.push_back({stage::pga, pga_row, add_supremizers, [](const ReductionSize &size) {
-                    return StageNeed{generators_of(size) +
-                                     1.5 * size.dofs * size.joined / size.ranks};
+                    constexpr double of_coordinate = 1e-8; // seconds
+                    return StageNeed{
+                        .numbers = generators_of(size) + 1.5 * size.dofs * size.joined / size.ranks,
+                        .seconds = of_coordinate * size.multipliers * size.joined * size.joined};
                   }});
 }
 

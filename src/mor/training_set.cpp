@@ -12,7 +12,7 @@ namespace rbvi {
 Mu box_centre(const ParameterSpace &space) {
   Mu mu;
   for (int i = 0; i < space.size(); ++i)
-    mu.push_back((space.at(i).lower + space.at(i).upper) / 2);
+    mu.push_back(taken(space.at(i), (space.at(i).lower + space.at(i).upper) / 2));
   return mu;
 }
 

@@ -168,14 +168,14 @@ void read_free(Reader &reader, Scene &scene, Defects &defects) {
   std::vector<std::string> names;
   if (node.value.empty() && node.items.empty()) {
     for (const auto &[name, parameter] : section(reader, "parameters").entries)
-      if (parameter.find("range") != nullptr) names.push_back(name);
+      if (!is_constant(parameter)) names.push_back(name);
   } else {
     defects.collect(node, [&] { names = names_in(node); });
   }
   for (const std::string &name : names) {
     const auto found = std::ranges::find(scene.parameters.all, name, &Parameter::name);
     const CaseNode *declared = section(reader, "parameters").find(name);
-    const bool varies = declared != nullptr && declared->find("range") != nullptr;
+    const bool varies = declared != nullptr && !is_constant(*declared);
     if (declared != nullptr && !varies)
       defects.add(node, "the free parameter " + name + " needs a range");
     else if (found == scene.parameters.all.end())
@@ -309,7 +309,7 @@ SceneEntry read_case(CaseNode root, const std::string &file, const CaseChanges &
       scene_entry.options.push_back(option_of(reader, own, node));
     });
   for (const auto &[name, node] : section(reader, "parameters").entries)
-    if (node.is_table() && node.find("range") == nullptr)
+    if (node.is_table() && is_constant(node))
       defects.collect(node, [&, &own = name, &value = node] {
         scene_entry.options.push_back(option_of_constant(reader, own, value));
       });

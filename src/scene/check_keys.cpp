@@ -83,6 +83,10 @@ public:
     for (const char *section_name : {"parameters", "let"})
       for (const auto &[name, node] : section(reader, section_name).entries)
         known_.push_back(name);
+    for (const auto &[name, node] : section(reader, "parameters").entries)
+      if (const CaseNode *values = node.find("values"))
+        for (const std::string &value : names_in(*values))
+          known_.push_back(value);
     in_outputs_ = known_;
     in_outputs_.insert(in_outputs_.end(), output_fields().begin(), output_fields().end());
   }

@@ -85,7 +85,11 @@ const std::vector<CaseKey> all_keys{
     {"mesh.facts.*", "within", "boundary", "a boundary: one that has all of its facets"},
     {"let", "*", "expression", "in parameters, coordinates and those above it"},
     {"parameters.*", "range", "[number, number]", "of which the model is made"},
-    {"parameters.*", "default", "number", "while it is fixed", true},
+    {"parameters.*", "values", "[name, name]",
+     "of a parameter that is a choice, in place of a range: in expressions 0, 1, ..., by these "
+     "names "
+     "(kind == steel ? 210 : 100); the model has each exactly"},
+    {"parameters.*", "default", "number", "while it is fixed; of a choice a name", true},
     {"parameters.*", "limits", "[number, number]", "beyond which the scene makes no sense"},
     {"parameters.*", "unit", "unit",
      "of values without one, in the file, options, tables and queries; default: that of the "
@@ -238,6 +242,8 @@ const std::vector<CaseKey> all_keys{
      "the moment of all tractions, or of the tangential ones alone"},
     {"outputs.*", "where", "expression", "a condition: the part that counts"},
     {"outputs.*", "says", "text", "what it is"},
+    {"outputs.*", "unit", "a unit",
+     "that it is told in; default: that of the case. Without units of the case a label"},
     {"require.*", "that", "expression", "in parameters: it must hold", true},
     {"require.*", "says", "text", "what to tell where it does not", true},
     {"curves.*", "circle", "[x, y, radius]", "in the mesh", true, "m"},

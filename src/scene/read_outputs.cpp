@@ -148,8 +148,14 @@ bool names_a_place(const Expression &value) {
   });
 }
 
-void put_values(Reader &reader, const CaseNode &node, const CaseNode &value, const Scene &scene,
-                OutputForm &form) {
+/// A value in the unit of an output, of which one is `size` of the case's.
+Expression in_unit(const Expression &value, double size) {
+  if (size == 1) return value;
+  return parse_expression("(" + value.text() + ") / " + shortest_number(size));
+}
+
+void put_values(Reader &reader, const CaseNode &node, const CaseNode &value, double size,
+                const Scene &scene, OutputForm &form) {
   const CaseNode *where = node.find("where");
   const Expression one = parse_expression("1"), of = expression_in(reader, value);
   const bool measures = form.kind == Kind::measure;
@@ -158,10 +164,10 @@ void put_values(Reader &reader, const CaseNode &node, const CaseNode &value, con
   for (const CaseNode *given : {&value, where})
     if (given != nullptr) check_fields(reader, scene, form, expression_in(reader, *given));
   form.conditional = measures || where != nullptr;
-  const Formula formula =
-      formula_of(reader, {measures ? one : of, measures           ? of
-                                               : where != nullptr ? expression_in(reader, *where)
-                                                                  : one});
+  const Formula formula = formula_of(reader, {in_unit(measures ? one : of, size),
+                                              measures           ? of
+                                              : where != nullptr ? expression_in(reader, *where)
+                                                                 : one});
   form.values = field_values_of(formula);
   form.moved_by = dependence_of(formula);
   for (const CaseNode *given : {&value, where})
@@ -183,7 +189,8 @@ void put_reaction(const Reader &reader, const CaseNode &node, const Scene &scene
   form.at = names_in(entry(node, "at"));
 }
 
-void put_spring(Reader &reader, const CaseNode &node, const Scene &scene, OutputForm &form) {
+void put_spring(Reader &reader, const CaseNode &node, double size, const Scene &scene,
+                OutputForm &form) {
   for (const char *other : {"at", "in", "point", "where"})
     if (node.find(other) != nullptr)
       throw bad_input("the force of a spring is that of the whole spring: {spring: NAME}");
@@ -194,7 +201,7 @@ void put_spring(Reader &reader, const CaseNode &node, const Scene &scene, Output
   form.place = Place::boundary;
   form.means = spring.means;
   const auto coefficient = [&](const std::string &text) {
-    return coefficient_of(formula_of(reader, {parse_expression(text)}));
+    return coefficient_of(formula_of(reader, {in_unit(parse_expression(text), size)}));
   };
   if (spring.stiffness) form.stiffness = coefficient(spring.stiffness->text());
   if (spring.preload) form.preload = coefficient(*spring.preload);
@@ -270,19 +277,28 @@ OutputForm output_in(Reader &reader, const std::string &name, const CaseNode &no
     throw bad_input("'about' and 'of' are those of a moment: {moment: z, about: [0, 0]}");
   OutputForm form{name};
   form.kind = std::ranges::find(kinds, kind, &std::pair<std::string, Kind>::first)->second;
+  const CaseNode *unit = node.find("unit");
+  const double size = unit == nullptr ? 1 : size_of(reader, unit->value);
   if (form.kind == Kind::reaction) {
     put_reaction(reader, node, scene, form);
   } else if (form.kind == Kind::spring) {
-    put_spring(reader, node, scene, form);
+    put_spring(reader, node, size, scene, form);
   } else if (form.kind == Kind::moment) {
     put_moment(reader, node, scene, form);
   } else {
     put_place(reader, node, scene, form);
-    put_values(reader, node, entry(node, kind), scene, form);
+    put_values(reader, node, entry(node, kind), size, scene, form);
   }
+  if (form.kind == Kind::reaction || form.kind == Kind::moment)
+    form.vector = (1 / size) * form.vector;
   if (const CaseNode *says = node.find("says")) form.says = says->value;
-  if (const std::optional<Dimension> dimension = dimension_of_output(reader, node, scene, form))
+  const std::optional<Dimension> dimension = dimension_of_output(reader, node, scene, form);
+  if (unit != nullptr) {
+    form.unit = unit->value;
+    if (dimension) check_dimension({size, dimension_of(form.unit), true}, *dimension, form.unit);
+  } else if (dimension) {
     form.unit = unit_in(*reader.units, *dimension);
+  }
   return form;
 }
 

@@ -4,6 +4,7 @@
 #include "rbvi/core/validity.hpp"
 
 #include <algorithm>
+#include <cctype>
 
 namespace rbvi {
 
@@ -23,7 +24,28 @@ bool holds(const Range &range, double value) {
   return value >= range.lower && value <= range.upper;
 }
 
+/// Of a choice, with names of its values.
+Parameter choice_in(const std::string &name, const CaseNode &node, const CaseNode &values) {
+  Parameter parameter{name, ""};
+  for (const char *of_numbers : {"range", "limits", "unit", "spacing"})
+    if (node.find(of_numbers) != nullptr)
+      throw bad_input(name + " has values: it has no '" + std::string(of_numbers) + "'");
+  parameter.choices = names_in(values);
+  const auto is_name = [](const std::string &text) {
+    return std::isalpha(static_cast<unsigned char>(text[0])) != 0 &&
+           text.find_first_of(" .-+*/()") == std::string::npos;
+  };
+  if (parameter.choices.size() < 2 || !std::ranges::all_of(parameter.choices, is_name))
+    throw bad_input("the values of " + name + " are names, two at least: [steel, brass]");
+  parameter.value = parse_value(parameter, entry(node, "default").value, "the default of " + name);
+  parameter.upper = static_cast<double>(parameter.choices.size() - 1);
+  if (parameter.value != taken(parameter, parameter.value))
+    throw bad_input("the default of " + name + " is one of " + joined(parameter.choices));
+  return parameter;
+}
+
 Parameter parameter_in(Reader &reader, const std::string &name, const CaseNode &node) {
+  if (const CaseNode *values = node.find("values")) return choice_in(name, node, *values);
   const std::string unit = unit_of(node);
   Parameter parameter{name, unit, 0, 0, number_in(reader, entry(node, "default"), unit)};
   parameter.lower = parameter.upper = parameter.value;
@@ -39,11 +61,6 @@ Parameter parameter_in(Reader &reader, const std::string &name, const CaseNode &
                       ", lies outside of its range");
   }
   return parameter;
-}
-
-/// How many of the unit of the case one of a unit is.
-double size_of(const Reader &reader, const std::string &unit) {
-  return reader.units && !unit.empty() ? from_unit(1, unit, *reader.units) : 1;
 }
 
 /// Another name for the value of a parameter in its unit, and the let that makes the parameter of
@@ -68,10 +85,6 @@ bool is_log_spaced(const CaseNode &node, const Parameter &parameter) {
   return spacing == "log";
 }
 
-bool is_constant(const CaseNode &parameter) {
-  return parameter.find("range") == nullptr;
-}
-
 void check_new(const Reader &reader, const std::string &name) {
   if (std::ranges::find(reader.parameters, name) != reader.parameters.end() ||
       std::ranges::find(reader.lets, name, &Let::name) != reader.lets.end())
@@ -87,6 +100,22 @@ void read_constants(Reader &reader, Defects &defects) {
         reader.constants.push_back(constant);
         const double seen = size_of(reader, constant.unit) * constant.value;
         reader.lets.push_back({own, Expression({{Operation::number, 0, seen}}, {})});
+      });
+}
+
+/// Names of choices are their numbers in expressions.
+void read_names_of_choices(Reader &reader, Defects &defects) {
+  for (const auto &[name, node] : section(reader, "parameters").entries)
+    if (const CaseNode *values = node.find("values"))
+      defects.collect(*values, [&] {
+        const std::vector<std::string> names = names_in(*values);
+        for (std::size_t k = 0; k < names.size(); ++k) {
+          const auto other = std::ranges::find(reader.lets, names[k], &Let::name);
+          if (other != reader.lets.end() && other->value.constant() == static_cast<double>(k))
+            continue; // of another parameter with these values
+          check_new(reader, names[k]);
+          reader.lets.push_back({names[k], parse_expression(std::to_string(k))});
+        }
       });
 }
 
@@ -138,6 +167,7 @@ void check_limits(const Reader &reader, const Scene &scene, Defects &defects) {
 void read_parameters(Reader &reader, Scene &scene, Defects &defects) {
   const CaseNode &all = section(reader, "parameters");
   read_constants(reader, defects);
+  read_names_of_choices(reader, defects);
   for (const auto &[name, node] : all.entries)
     if (!is_constant(node) && (reader.used.empty() || reader.used.contains(name)))
       defects.collect(node, [&, &own = name, &value = node] {

@@ -27,7 +27,7 @@ const CaseNode &declaration_of(const Reader &reader, const std::string &paramete
 void read_place(const Reader &reader, const std::string &name, const CaseNode &node,
                 const Scene &scene, SceneTest &test) {
   const CaseNode &declared = declaration_of(reader, name);
-  if (declared.find("range") == nullptr)
+  if (is_constant(declared))
     throw bad_input(name + " is a constant: a test is at parameters that have a range");
   const double value = number_in(reader, node, unit_of(declared));
   const auto used = std::ranges::find(scene.parameters.all, name, &Parameter::name);
@@ -35,6 +35,12 @@ void read_place(const Reader &reader, const std::string &name, const CaseNode &n
   check_range(used->valid, value, name);
   if (declared.find("limits") == nullptr) check_range({used->lower, used->upper}, value, name);
   test.at[name] = value;
+}
+
+/// Of an output of the scene's own; else "".
+std::string unit_of_output(const std::string &name, const Scene &scene) {
+  const auto found = std::ranges::find(scene.outputs, name, &OutputForm::name);
+  return found == scene.outputs.end() ? "" : found->unit;
 }
 
 /// Throws bad_input where there is none.
@@ -62,7 +68,7 @@ SceneTest test_in(const Reader &reader, const std::string &name, const CaseNode 
   for (const auto &[output, value] : expect.entries)
     defects.collect(value, [&, &own = output, &number = value] {
       check_output(own, scene);
-      test.expected[own] = number_in(reader, number);
+      test.expected[own] = number_in(reader, number, unit_of_output(own, scene));
     });
   test.tolerance = number_in(reader, entry(node, "tolerance"));
   if (!(test.tolerance > 0)) throw bad_input("the tolerance of a test is positive");

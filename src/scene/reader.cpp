@@ -32,6 +32,10 @@ Expression expression_in(const Reader &reader, const CaseNode &node) {
   }
 }
 
+bool is_constant(const CaseNode &parameter) {
+  return parameter.find("range") == nullptr && parameter.find("values") == nullptr;
+}
+
 std::string unit_of(const CaseNode &parameter) {
   if (const CaseNode *unit = parameter.find("unit")) return unit->value;
   for (const char *key : {"default", "range", "limits"})
@@ -40,6 +44,10 @@ std::string unit_of(const CaseNode &parameter) {
            numbers->items.empty() ? std::vector<CaseNode>{*numbers} : numbers->items)
         if (const std::string unit = unit_behind(one.value); !unit.empty()) return unit;
   return "";
+}
+
+double size_of(const Reader &reader, const std::string &unit) {
+  return reader.units && !unit.empty() ? from_unit(1, unit, *reader.units) : 1;
 }
 
 double number_in(const Reader &reader, const CaseNode &node, const std::string &unit) {

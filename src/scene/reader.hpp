@@ -60,10 +60,14 @@ const CaseNode &entry(const CaseNode &table, const std::string &name);
 /// What is this value by itself, a parameter or a constant, cannot leave the range.
 void limit(Reader &reader, const Expression &value, const Range &range, Scene &scene);
 
+/// Whether a parameter has one value, neither a range nor a choice.
+bool is_constant(const CaseNode &parameter);
 /// That of the numbers of a parameter: its `unit`, else that of the first of them that has one.
 std::string unit_of(const CaseNode &parameter);
-/// A number in the unit of a parameter ("": that of the case): without names and a unit it is in
-/// that unit, with names in the units of the case.
+/// How many of the unit of the case one of a unit is; without units of the case 1.
+double size_of(const Reader &reader, const std::string &unit);
+/// A number in the unit of a parameter or of an output ("": that of the case): without names and a
+/// unit it is in that unit, with names in the units of the case.
 double number_in(const Reader &reader, const CaseNode &node, const std::string &unit);
 /// Two.
 Range range_in(const Reader &reader, const CaseNode &list, const std::string &unit);

@@ -5,6 +5,7 @@
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/scene/case.hpp"
+#include "reader.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -82,7 +83,7 @@ CaseNode counted(const std::string &tree, Compared compared) {
     });
   if (CaseNode *parameters = section_of(root, "parameters"))
     for (auto &[name, node] : parameters->entries)
-      take_away(node, [varies = node.find("range") != nullptr](const CaseNode::Entry &entry) {
+      take_away(node, [varies = !is_constant(node)](const CaseNode::Entry &entry) {
         return entry.name == "range" || entry.name == "limits" || entry.name == "says" ||
                (entry.name == "default" && varies);
       });
@@ -177,8 +178,12 @@ std::map<std::string, std::string> texts_of_parameters(const Scene &scene) {
   std::map<std::string, std::string> texts;
   const CaseNode tree = tree_in(scene.tree);
   if (const CaseNode *parameters = tree.find("parameters"))
-    for (const auto &[name, node] : parameters->entries)
+    for (const auto &[name, node] : parameters->entries) {
       if (const CaseNode *says = node.find("says")) texts[name] = says->value;
+      if (const CaseNode *values = node.find("values"); values != nullptr)
+        texts[name] +=
+            (texts[name].empty() ? "" : "; ") + joined(names_in(*values)) + " are 0, 1, ...";
+    }
   return texts;
 }
 

@@ -115,7 +115,8 @@ Invocation read_invocation(int argc, char **argv) {
     result.message = "rbvi " RBVI_VERSION;
     return result;
   }
-  if (given.size() < 2 || has("-help") || has("-h")) {
+  const bool whole = has("-help") || has("-h");
+  if (given.size() < 2 || whole) {
     for (const char *option : {"-scene", "-case"})
       if (const auto named = std::find(given.begin(), given.end(), option); given.end() - named > 1)
         result.file = *(named + 1);
@@ -125,6 +126,7 @@ Invocation read_invocation(int argc, char **argv) {
     given.emplace_back("help");
   }
   result.command = given[1];
+  if (result.command == "help" && !whole) result.topic = "help";
   if (std::find(names.begin(), names.end(), result.command) == names.end())
     return refused("unknown command '" + result.command + "'; the nearest one is '" +
                    nearest_name(result.command, names) + "' (rbvi -help lists all)");

@@ -54,18 +54,22 @@ std::string factorisation_text(const Setup &setup) {
 
 // Fitted to what `rbvi bench -bench_growth` measured on all cases, on meshes from 3 400 to 91 000
 // dofs: right to a factor of two or so.
-constexpr double of_number = 8;         ///< bytes
-constexpr double mesh_bytes = 1500;     ///< of a problem, for a dof: mesh, numbers, terms
-constexpr double used_once = 12e6;      ///< bytes: libraries, buffers
-constexpr double matrix_entry = 3;      ///< numbers: in A and in the product of V
-constexpr double mesh_seconds = 5e-6;   ///< for a dof
-constexpr double solve_seconds = 5e-10; ///< likewise, one right-hand side
-constexpr double newton_solves = 80;    ///< by Nitsche's method, for a sample
-constexpr double axis_points = 9;       ///< of the grid of the condensed operator, along an axis
-constexpr double most_modes = 200;      ///< however many samples
-constexpr double most_buffered = 1e7;   ///< numbers: while fields are written
-constexpr double most_queries = 200;    ///< random ones of the self-check
-constexpr double for_others = 5;        ///< times as many where friction may have other answers
+constexpr double of_number = 8;                ///< bytes
+constexpr double mesh_bytes = 1500;            ///< of a problem, for a dof: mesh, numbers, terms
+constexpr double used_once = 12e6;             ///< bytes: libraries, buffers
+constexpr double matrix_entry = 3;             ///< numbers: in A and in the product of V
+constexpr double mesh_seconds = 1.2e-5;        ///< for a dof
+constexpr double sample_seconds = 3e-3;        ///< for a sample: its files, its contact
+constexpr double of_dof = 1.5e-6;              ///< of a sample for a dof
+constexpr double of_sum = 5e-6, of_map = 1e-5; ///< likewise where A is a sum of terms, or assembled
+constexpr double written_seconds = 1.2e-7;     ///< for a number of a model and its fields
+constexpr double solve_seconds = 5e-10;        ///< likewise, one right-hand side
+constexpr double newton_solves = 80;           ///< by Nitsche's method, for a sample
+constexpr double axis_points = 9;     ///< of the grid of the condensed operator, along an axis
+constexpr double most_modes = 200;    ///< however many samples
+constexpr double most_buffered = 1e7; ///< numbers: while fields are written
+constexpr double most_queries = 200;  ///< random ones of the self-check
+constexpr double for_others = 5;      ///< times as many where friction may have other answers
 constexpr double for_others_in_space = 20;
 constexpr double law_seconds = 6e-9;   ///< of a query, for the square of its multipliers
 constexpr double scaled_solves = 2;    ///< of a sample where columns are kept
@@ -109,8 +113,14 @@ double snapshot_seconds(const Scene &scene, const RunSizes &size, double samples
     return 2 * factorisation + size.multipliers * factor * column_seconds +
            of_group * (scaled_solves * solve_seconds * factor +
                        law_seconds * size.multipliers * size.multipliers);
-  const bool each = !constant_stiffness(scene) && !size.eliminated;
-  return of_group * (size.solves * solve_seconds * factor + (each ? factorisation : 0));
+  const bool varies = !constant_stiffness(scene),
+             assembled = !split_sum(scene.a, scene.parameters).mapped.empty();
+  const double of_a = varies ? (assembled ? of_map : of_sum) : 0;
+  return factorisation +
+         of_group *
+             (sample_seconds +
+              size.balances * (size.dofs * (of_dof + of_a) + size.solves * solve_seconds * factor +
+                               (varies && !size.eliminated ? factorisation : 0)));
 }
 
 /// The stage that takes most on a node, its bytes there, and what makes it smaller.
@@ -249,9 +259,9 @@ ReductionSize reduction_size(const OfflineOptions &options, const std::vector<Mu
   const Joining joining = way.joining(scene, options.reduce, size);
   size.joined = joining.functions;
   size.modes = std::min(size.dofs, std::min(size.samples, most_modes) + size.joined);
-  const double terms = count(split_sum(scene.a, space).exact) + std::min(size.of_a, most_terms / 2);
+  size.terms = count(split_sum(scene.a, space).exact) + std::min(size.of_a, most_terms / 2);
   size.model =
-      size.dofs * size.modes / size.ranks + terms * size.modes * size.modes + joining.stored;
+      size.dofs * size.modes / size.ranks + size.terms * size.modes * size.modes + joining.stored;
   const double query = query_seconds + trace_seconds * size.contact * size.modes +
                        (way.law ? law_seconds * size.multipliers * size.multipliers : 0) +
                        (way.dual_basis && !way.law ? pair_seconds * std::pow(size.modes, 3) : 0);
@@ -288,7 +298,8 @@ Foresight foresee(const OfflineOptions &options, const std::vector<Mu> &training
     if (stage.need != nullptr) add(stage.name, stage.need(size), stage.smaller);
   const double fields = size.dofs * size.modes; // after the model of the first rank
   add(stage::writing,
-      {fields / size.ranks, size.model + fields + std::min(2 * fields, most_buffered)},
+      {fields / size.ranks, size.model + fields + std::min(2 * fields, most_buffered),
+       written_seconds * (size.model + fields)},
       coarser_hats);
   return all;
 }

@@ -112,6 +112,12 @@ void print_help(const Registry &registry, const std::string &scene, const std::s
   std::printf("rbvi COMMAND -case FILE [options]        (under mpirun; one dash or two)\n");
   for (const Command &known : commands())
     std::printf("  %-21s %s\n", known.name.c_str(), known.does.c_str());
+  if (command == "help") {
+    std::printf(
+        "COMMAND -help: options of a command; -help -case FILE: those of a case, and its mesh; "
+        "-help: all\n");
+    return;
+  }
   std::printf(
       "  COMMAND -help         usage and options of a command\n"
       "  -help -case FILE      options, parameters and mesh of a case\n"

@@ -39,6 +39,7 @@ Given adapt_parameter(Parameter &parameter, const std::optional<UnitSystem> &uni
   const std::vector<std::string> parts = split(text, ',');
   const std::string what = "option -" + parameter.name;
   const auto number = [&](const std::string &part) {
+    if (!parameter.choices.empty()) return parse_value(parameter, part, what);
     return parse_given(part, units, parameter.unit, what);
   };
   if (text.empty()) return Given::nothing;

@@ -139,7 +139,8 @@ std::vector<Option> of_separation(ReduceOptions &o) {
 
 std::vector<Option> of_law(ReduceOptions &o) {
   std::vector<std::string> reductions{
-      "condensed on rigid supports and between two bodies, otherwise cone"};
+      "condensed on rigid supports, between two bodies, and where A is one matrix for all mu, "
+      "otherwise cone"};
   for (const ReductionWay &way : reduction_ways())
     if (*way.name != 0) reductions.emplace_back(way.says);
   return {

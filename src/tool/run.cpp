@@ -6,6 +6,7 @@
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/model/model.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/par/progress.hpp"
 #include "rbvi/tool/commands.hpp"
 
 #include <fcntl.h>
@@ -21,37 +22,45 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the process prints goes into a file meanwhile.
+/// What the process prints goes into a file meanwhile, but for progress on a terminal, behind
+/// `before`.
 class IntoFile {
 public:
-  explicit IntoFile(const fs::path &file) : printed_(::dup(STDOUT_FILENO)) {
+  IntoFile(const fs::path &file, const std::string &before)
+      : printed_(::fdopen(::dup(STDOUT_FILENO), "w")) {
     std::fflush(stdout);
     const int log = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0666);
-    if (log < 0 || ::dup2(log, STDOUT_FILENO) < 0) throw cannot_write(file.string());
+    if (log < 0 || printed_ == nullptr || ::dup2(log, STDOUT_FILENO) < 0)
+      throw cannot_write(file.string());
     ::close(log);
+    show_progress_on(printed_, before);
   }
   ~IntoFile() {
     std::fflush(stdout);
-    ::dup2(printed_, STDOUT_FILENO);
-    ::close(printed_);
+    show_progress_on(stdout, "");
+    ::dup2(::fileno(printed_), STDOUT_FILENO);
+    std::fclose(printed_);
   }
   IntoFile(const IntoFile &) = delete;
   IntoFile &operator=(const IntoFile &) = delete;
 
 private:
-  int printed_;
+  std::FILE *printed_;
 };
 
 /// A line of the first rank for a step, whose own lines go into the log. Collective.
 void take_step(const char *name, const fs::path &log, const std::function<void()> &work) {
   const bool first = rank_of(PETSC_COMM_WORLD) == 0;
   const double start = MPI_Wtime();
-  if (first) std::printf("%-9s ", name);
+  constexpr std::size_t width = 10;
+  std::string before = name;
+  before.resize(width, ' ');
+  if (first) std::printf("%s", before.c_str());
   if (first) std::fflush(stdout);
   try {
     std::optional<IntoFile> quiet;
     collectively(PETSC_COMM_WORLD, [&] {
-      if (first) quiet.emplace(log);
+      if (first) quiet.emplace(log, before);
     });
     work();
   } catch (const std::exception &) {

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <sstream>
 
@@ -107,7 +108,24 @@ void write_solution(Problem &problem, const std::string &vtu, const Mu &mu,
   });
 }
 
-void command_list(const std::string &folder, const Registry &registry) {
+namespace {
+
+/// The cases that are installed beside the program, "" where there are none.
+std::string installed_cases() {
+  std::error_code none;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", none),
+                              cases = program.parent_path().parent_path() / "share/rbvi/cases";
+  return !none && std::filesystem::is_directory(cases, none) ? cases.string() : "";
+}
+
+} // namespace
+
+void command_list(const std::string &given, const Registry &registry) {
+  std::string folder = given;
+  if (folder == "cases" && !std::filesystem::exists(folder) && !installed_cases().empty()) {
+    folder = installed_cases();
+    std::printf("In %s:\n", folder.c_str());
+  }
   std::vector<SceneEntry> scenes = registry, cases = cases_in(folder);
   if (scenes.empty() && cases.empty())
     throw bad_input("there is no case " + folder + "/*/case.yaml: use rbvi list FOLDER");

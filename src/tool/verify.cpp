@@ -52,7 +52,7 @@ std::vector<Mu> along_parameters(const Scene &scene, const Mu &middle) {
     for (int k = 0; k <= steps; ++k) {
       const double x = low + (high - low) * k / steps, value = own ? own->back(x) : x;
       lines.push_back(middle);
-      lines.back()[i] = std::clamp(value, parameter.lower, parameter.upper);
+      lines.back()[i] = taken(parameter, std::clamp(value, parameter.lower, parameter.upper));
     }
   }
   return lines;

@@ -247,6 +247,45 @@ TEST_F(CsvSet, RefusesWhatIsWrong) {
   EXPECT_TRUE(refuses("cannot read", [&] { (void)parse_set(space(), testing::TempDir()); }));
 }
 
+/// One of three metals beside a length.
+ParameterSpace with_choice() {
+  Parameter metal{"metal", "", 0, 2, 1};
+  metal.choices = {"steel", "brass", "lead"};
+  return all_free({{"length", "m", 1, 2, 1.5}, metal});
+}
+
+TEST(Choice, IsGivenByNameOrNumberAndHasNoOtherValues) {
+  EXPECT_EQ(parse_mu(with_choice(), "metal=lead"), (Mu{1.5, 2}));
+  EXPECT_EQ(parse_mu(with_choice(), "1, brass"), (Mu{1, 1}));
+  EXPECT_EQ(parse_mu(with_choice(), "1, 0"), (Mu{1, 0}));
+  EXPECT_EQ(describe(with_choice(), Mu{1.5, 2}), "length=1.5 metal=lead");
+  EXPECT_EQ(parse_mu(with_choice(), "length=1.5,metal=lead"), (Mu{1.5, 2}));
+  const auto refused = [](const std::string &text, const std::string &part) {
+    return refuses(part, [&] { (void)parse_mu(with_choice(), text, true); });
+  };
+  EXPECT_TRUE(refused("metal=iron", "one of steel, brass, lead"));
+  EXPECT_TRUE(refused("metal=0.5", "one of steel, brass, lead (0 to 2), not 0.5"));
+  EXPECT_TRUE(refused("metal=3", "not 3"));
+}
+
+TEST(Choice, IsTakenByEverySet) {
+  const auto metals = [](const std::string &set) {
+    std::vector<int> count(3);
+    for (const Mu &mu : parse_set(with_choice(), set)) {
+      EXPECT_EQ(mu[1], taken(with_choice().at(1), mu[1])) << set;
+      ++count[static_cast<std::size_t>(mu[1])];
+    }
+    return count;
+  };
+  EXPECT_EQ(metals("grid:2,3"), (std::vector<int>{2, 2, 2}));
+  EXPECT_EQ(metals("grid:2,2"), (std::vector<int>{2, 0, 2}));
+  EXPECT_EQ(metals("corners"), (std::vector<int>{3, 2, 3})) << "and centres of faces";
+  for (const int count : metals("random:3000:1"))
+    EXPECT_NEAR(count, 1000, 100);
+  EXPECT_TRUE(refuses("4 values of metal, which has 3",
+                      [&] { (void)parse_set(with_choice(), "grid:2,4"); }));
+}
+
 TEST(Describe, ReadsBackExactly) {
   EXPECT_EQ(describe(space(), Mu{0.18, -0.02}), "radius=0.18 x=-0.02");
   const double third = 0.17 + 0.01 / 3;

@@ -142,7 +142,7 @@ TEST(Condensed, TooFewPointsMakeAModelThatSaysItsError) {
   const Matrix basis = nodal_dual_basis(problem, Matrix::Zero(problem.dual_size(), 1));
   testing::internal::CaptureStderr();
   const CondensedOperator condensed =
-      condensed_operator(problem, affine, {{1.0}}, basis, {1e-9, 5});
+      condensed_operator(problem, affine, {{1.0}}, basis, {1e-9, 9});
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_EQ(said.find("-condensed_tolerance") != std::string::npos, rank_of(PETSC_COMM_WORLD) == 0);
   const Matrix expected = truth(problem, basis, {0.3}),
@@ -151,6 +151,7 @@ TEST(Condensed, TooFewPointsMakeAModelThatSaysItsError) {
                                 theta_of(problem, affine.b, {{1.0}}, {0.3}), basis.cols(), {0.3});
   EXPECT_GT(condensed.error, 1e-9);
   EXPECT_LE((found - expected).norm(), 10 * condensed.error * expected.norm());
+  EXPECT_THROW(condensed_operator(problem, affine, {{1.0}}, basis, {1e-9, 5}), Error) << "0.01";
 }
 
 TEST(NodalDualBasis, FoldsMirrorImagesOfSymmetricMultipliersOnly) {

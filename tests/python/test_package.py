@@ -19,6 +19,40 @@ from rbvi import _progress
 MODELS, BIN = Path(sys.argv[1]), Path(sys.argv[2])
 
 
+CHOICE = """\
+rbvi: 1
+physics: plane_strain
+mesh: {built_in: half_disc, edges: 20, degree: 1}
+parameters:
+  indentation: {range: [0.02, 0.09], default: 0.05}
+  metal: {values: [steel, brass], default: steel}
+materials: {body: {at: all, E: 'metal == steel ? 21 : 10', nu: 0.3}}
+imposed: {flat side: {at: top, ux: 0, uy: -indentation}}
+contact: {support: {at: contact, against: {disk: {center: [0, -2.001], radius: 1}}}}
+train: grid:3,2
+"""
+
+
+class Choices(unittest.TestCase):
+    def test_are_given_by_name(self):
+        with tempfile.TemporaryDirectory() as folder:
+            case = Path(folder) / "case.yaml"
+            case.write_text(CHOICE, encoding="utf-8")
+            full = rbvi.solve(case, {"metal": "brass"})
+            rbvi.offline(case, Path(folder) / "run", quiet=True)
+            model = rbvi.Model(Path(folder) / "run/model.h5")
+            forces = [model(metal=metal)["normal_force"] for metal in ("steel", "brass", 0, 1)]
+            self.assertEqual(forces[:2], forces[2:])
+            self.assertAlmostEqual(forces[0] / forces[1], 2.1, 9)
+            self.assertAlmostEqual(forces[1] / full["normal_force"], 1, 9)
+            table = model.table({"metal": ["brass", "steel"], "indentation": 0.05})
+            self.assertEqual(list(table["normal_force"]), [forces[1], forces[0]])
+            self.assertIn("steel, brass are 0, 1", model.parameters["metal"].says)
+            with self.assertRaisesRegex(rbvi.BadInput, "one of steel, brass"):
+                model(metal="gold")
+            self.assertTrue(np.isnan(model.gradient(metal="brass")["normal_force"]["metal"]))
+
+
 class Answers(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

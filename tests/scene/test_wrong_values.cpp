@@ -52,6 +52,12 @@ TEST(WrongCase, Parameters) {
       {k("range: [1, 2], default: one"), "has the name one"},
       {k("range: [1, 2], default: 1/0"), "is not finite"},
       {k("range: [1, 2], default: 1.5, limits: [1.6, 3]"), "outside of [1.6, 3]"},
+      {k("values: [one, two], default: three"), "one of one, two"},
+      {k("values: [one, two], default: 2"), "the default of k is one of one, two"},
+      {k("values: [one, two], default: one, range: [0, 1]"), "k has values: it has no 'range'"},
+      {k("values: [one], default: one"), "names, two at least"},
+      {k("values: [1, 2], default: 1"), "names, two at least"},
+      {k("values: [young, old], default: old"), "there is a parameter 'young' already"},
       {k("range: [1, 2], default: 1.5, spacing: cubic"), "use one of linear, log"},
       {k("range: [-1, 2], default: 1, spacing: log"), "is not positive"},
       {{{"parameters", "{depth: {range: [0.01, 0.1], default: 0.05}, k: {default: 1}, "

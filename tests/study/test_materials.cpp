@@ -130,6 +130,37 @@ TEST_F(Materials, ByRegionAreThoseByPlace) {
 }
 
 /// Numbers of materials come back from the files of a model, and are asked for.
+/// Values between which nothing is smooth: one factorisation each, and the law and u are exact.
+TEST_F(Materials, ChoicesAreExact) {
+  const auto scene = [](const std::string &young) {
+    return make_scene(
+        read_case("rbvi: 1\nphysics: plane_strain\nmesh: {file: square.msh, degree: 2}\n"
+                  "parameters: {kind: {values: [weak, layered, strong, odd], default: layered}, "
+                  "depth: {range: [0.01, 0.05], default: 0.02}}\n"
+                  "materials: {all: {at: all, E: '" +
+                      young +
+                      "', nu: 0.3}}\n"
+                      "imposed: {top: {at: top, ux: 0, uy: -depth}}\n"
+                      "contact: {floor: {at: floor, against: {plane: {normal: [0, -1], position: "
+                      "0}}}}\n",
+                  "square.yaml"),
+        {});
+  };
+  for (const char *young :
+       {"kind == weak ? 1 : kind == strong ? 30 : kind == odd ? 1 + 5*x : y < 0.5 ? 1 : 30",
+        "kind == weak ? 1 : kind == strong ? 30 : kind == odd ? 7 : 3"}) {
+    SCOPED_TRACE(young);
+    Reduced r(scene(young), "grid:4,4", PETSC_COMM_WORLD, mesh(true));
+    r.reduce({});
+    EXPECT_LE(r.bases.factorisations, 8);
+    const std::vector<Sample> truth =
+        testing_reduced::solve_all(r.problem, parse_set(r.problem.scene().parameters, "grid:4,3"));
+    const ModelErrors errors = r.errors_at(truth);
+    EXPECT_LT(errors.lambda.maxCoeff(), 1e-8);
+    EXPECT_LT(errors.u.maxCoeff(), 1e-4);
+  }
+}
+
 TEST_F(Materials, FilesKeepThem) {
   Reduced regions(scene_of(by_region, ", sides: {at: sides, ux: 0}"), "grid:2,2", PETSC_COMM_WORLD,
                   mesh(true));

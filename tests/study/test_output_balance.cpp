@@ -177,5 +177,36 @@ TEST(NamedOutputs, ReactionsOfAModelThatAreNotInBalanceAreNamed) {
   EXPECT_GT(made.model.made.histories.at("self_check/balance").front(), 1e-6);
 }
 
+/// Each in a unit of its own is what it is in that of the case, over how many one is.
+TEST(NamedOutputs, AreToldInTheirUnit) {
+  const std::vector<std::array<std::string, 2>> kinds{
+      {"integral: pressure, at: floor", "kN/mm"},
+      {"reaction: [0, 1], at: top", "kN/mm"},
+      {"moment: z, about: [0, 1], at: floor", "kN"},
+      {"measure: pressure > 0, at: floor", "m"},
+      {"max: pressure, where: x > 0.5, at: floor", "GPa"},
+      {"mean: uy, in: all", "m"}};
+  std::string outputs;
+  for (std::size_t i = 0; i < kinds.size(); ++i)
+    outputs += "  own" + std::to_string(i) + ": {" + kinds[i][0] + "}\n  told" + std::to_string(i) +
+               ": {" + kinds[i][0] + ", unit: " + kinds[i][1] + "}\n";
+  const Scene scene = pressed("imposed: {top: {at: top, ux: d/2, uy: -d}}\n", outputs,
+                              "plane_strain\nunits: {length: mm, force: N}");
+  compare_balance(scene, {0.07, 12}, [&](const std::map<std::string, double> &values) {
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+      const double own = values.at("own" + std::to_string(i));
+      EXPECT_GT(std::abs(own), 1e-3) << kinds[i][0];
+      EXPECT_NEAR(values.at("told" + std::to_string(i)), own / 1000, 1e-12 * std::abs(own))
+          << kinds[i][0];
+    }
+  });
+  for (std::size_t i = 0; i < kinds.size(); ++i)
+    EXPECT_EQ(scene.outputs[scene.outputs.size() - 2 * (kinds.size() - i) + 1].unit, kinds[i][1]);
+  EXPECT_THROW(pressed("imposed: {top: {at: top, ux: 0, uy: -d}}\n",
+                       "  wrong: {integral: pressure, at: floor, unit: mm}\n",
+                       "plane_strain\nunits: {length: mm, force: N}"),
+               Error);
+}
+
 } // namespace
 } // namespace rbvi::named_outputs_test

@@ -35,7 +35,16 @@ struct Parameter {
   double lower = 0, upper = 0;
   double value = 0; ///< used while the parameter is fixed
   Range valid{};    ///< where the scene makes sense: no box and no value may leave it
+  /// Names of the values 0, 1, ..., which are all that it takes; empty: it is a number.
+  std::vector<std::string> choices{};
 };
+
+/// The value that a parameter takes next to this one: of a choice a whole number.
+double taken(const Parameter &parameter, double value);
+
+/// A number in the unit of the parameter, or the name of a choice. Throws bad_input, which calls it
+/// `what`.
+double parse_value(const Parameter &parameter, const std::string &text, const std::string &what);
 
 /// All parameters of a scene, and which of them are free.
 struct ParameterSpace {

@@ -19,10 +19,10 @@ using QueriesAsked = std::function<void(int done, int all)>;
 
 /// Asks `model` at so many random parameters of its box, the same on every machine, and at its
 /// corners and faces (corners_and_faces), and collects what SelfCheck holds. Costs so many queries
-/// with outputs; `asked` is told of each. Throws bad_input where model, scene and options do not
-/// fit.
+/// without the outputs of the scene; `asked` is told of each. Throws bad_input where model, scene
+/// and options do not fit.
 SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries,
-                     const QueryOptions &options = {}, const QueriesAsked &asked = {});
+                     QueryOptions options = {}, const QueriesAsked &asked = {});
 
 /// "200 random queries and 14 at corners and faces, all answered; largest residual 3e-14
 /// (radius=0.8), ...": lines for people; says what to do where it is not clean.

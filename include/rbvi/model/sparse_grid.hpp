@@ -7,6 +7,7 @@
 #include "rbvi/core/dense.hpp"
 #include "rbvi/core/scene.hpp"
 
+#include <limits>
 #include <vector>
 
 namespace rbvi {
@@ -20,7 +21,11 @@ double value_back(const Scene &scene, int parameter, double coordinate);
 struct GridAxis {
   int parameter = 0;           ///< index into all parameters
   double lower = 0, upper = 0; ///< of its coordinate, which the abscissae take as -1 and 1
+  int most = std::numeric_limits<int>::max(); ///< points along it: a choice has no others
 };
+
+/// Of a parameter. A choice has Leja points for its values, which it is exact at.
+GridAxis axis_of(const Scene &scene, int parameter);
 
 /// The number of the abscissa along each axis.
 using GridPoint = std::vector<int>;

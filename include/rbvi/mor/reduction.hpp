@@ -35,6 +35,7 @@ struct ReductionSize {
   double loads;                 ///< of the condensed operator, each a column of A^-1
   double factorisation;         ///< seconds
   double of_a, of_f, of_b;      ///< samples of A and F, numbers of those of B
+  double terms = 1;             ///< of A
   double joined = 0, modes = 0; ///< functions that join the modes; with them
   double model = 0;             ///< of the reduced model
   double self_check = 0;        ///< seconds
@@ -42,13 +43,14 @@ struct ReductionSize {
   double responses(double count) const;
 };
 
-/// Numbers that each rank holds in a stage, and the first one; seconds, 0: they hang on what stages
-/// before it find.
+/// Numbers that each rank holds in a stage, and the first one; seconds, right to a factor of two or
+/// so on the processors that they were measured on.
 struct StageNeed {
   double numbers = 0, on_first = numbers, seconds = 0;
 };
 
 inline constexpr double column_seconds = 2e-10;   ///< for an entry of a factor, of many columns
+inline constexpr double product_seconds = 2e-10;  ///< for a number times a number, in matrices
 inline constexpr double span_factorisations = 60; ///< factorisations that responses in a span take
 inline constexpr double most_terms = 100;         ///< of the condensed operator; twice what A has
 inline constexpr const char *fewer_samples =

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdio>
 #include <string>
 
 namespace rbvi {
@@ -28,5 +29,10 @@ private:
   bool reports_, terminal_;
   std::chrono::steady_clock::time_point start_, last_;
 };
+
+/// From now on lines of progress that are updated go there, if that is a terminal, behind `before`,
+/// which is left at their end; plain lines go to standard output as ever. By default to standard
+/// output, behind nothing.
+void show_progress_on(std::FILE *terminal, const std::string &before);
 
 } // namespace rbvi

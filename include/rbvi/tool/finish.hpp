@@ -13,7 +13,8 @@ namespace rbvi {
 /// The command line: command, its file (inspect) or scene (help), and what PETSc is to see.
 struct Invocation {
   std::string command, file;
-  std::string topic; ///< help: the command that is asked about; new: the mesh; compare: -csv
+  /// help: the command that is asked about, or help itself: in short; new: the mesh; compare: -csv
+  std::string topic;
   std::vector<std::string> files{};           ///< compare: run folders, model files
   bool json = false;                          ///< help: as JSON
   mutable std::vector<std::string> arguments; ///< program name and options, dashes normalised

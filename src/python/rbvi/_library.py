@@ -67,6 +67,7 @@ FUNCTIONS = {
     "answer_of": [c_void_p, POINTER(Answer)],
     "solve_many": [c_void_p, DOUBLES, c_size_t, c_uint, c_uint, DOUBLES, DOUBLES, POINTER(c_int),
                    REASON, c_void_p],
+    "value": [c_void_p, c_size_t, c_char_p, POINTER(ctypes.c_double)],
     "contact_name": [c_void_p, c_size_t, POINTER(c_char_p)],
     "contact": [c_void_p, c_size_t, POINTER(Grid)],
     "field": [c_void_p, POINTER(Grid)],

@@ -196,13 +196,20 @@ class Model:
         return (f"<rbvi.Model {self._file}: {', '.join(self.parameters)} -> "
                 f"{len(self.outputs)} outputs>")
 
+    def _number(self, name, value):
+        """A value of a parameter, of a choice its name, too."""
+        if not isinstance(value, str):
+            return value
+        place = list(self.parameters).index(name)
+        return library.asked(ctypes.c_double, "value", self._handle, place, value.encode()).value
+
     def _mu(self, values):
         """All parameters, those that are left out at their values."""
         for name in values:
             if name not in self.parameters:
                 raise BadInput(unknown(name, list(self.parameters), "the model has no parameter"))
-        return np.array([values.get(name, one.value) for name, one in self.parameters.items()],
-                        dtype=float)
+        return np.array([self._number(name, values.get(name, one.value))
+                         for name, one in self.parameters.items()], dtype=float)
 
     def _solve(self, mu, extrapolate):
         call("solve", self._workspace, doubles(mu), library.EXTRAPOLATE * bool(extrapolate))
@@ -241,9 +248,11 @@ class Model:
         if len(lengths) > 1:
             raise BadInput(f"the columns have different lengths: {sorted(lengths)}")
         count = lengths.pop() if lengths else 1
-        columns = {name: np.broadcast_to(np.asarray(values, dtype=float), count)
-                   for name, values in given.items()}
-        self._mu(dict.fromkeys(columns, 0))  # names
+        self._mu(dict.fromkeys(given, 0))  # names
+        columns = {name: np.broadcast_to(
+            np.asarray([self._number(name, one) for one in np.atleast_1d(values)], dtype=float)
+            if np.asarray(values).dtype.kind in "OU" else np.asarray(values, dtype=float), count)
+            for name, values in given.items()}
         return np.column_stack([columns.get(name, np.full(count, one.value))
                                 for name, one in self.parameters.items()])
 

@@ -40,7 +40,7 @@ def solve(case, mu, *, ranks=1, quiet=True, **values):
     """`rbvi solve`: the outputs of one full solve by name; `mu`: parameters by name."""
     with tempfile.TemporaryDirectory() as folder:
         table = Path(folder) / "answer.csv"
-        at = ",".join(f"{name}={float(value)!r}" for name, value in mu.items())
+        at = ",".join(f"{name}={value if isinstance(value, str) else repr(float(value))}" for name, value in mu.items())
         rbvi("solve", ranks, quiet, {"case": case, "mu": at, "csv": table, **values})
         with open(table, encoding="utf-8", newline="") as file:
             row = next(csv.DictReader(file))
