@@ -31,7 +31,7 @@ from configuration_marks import (ARROW, HELD, SPRING, Labels, Mark, draw_held, d
                                  mark_dimensions)
 from configuration_solid import Solid, not_drawn, read_solid, solid_figure
 from figure_tools import (BLUE, GREEN, ORANGE, PURPLE, in_length, is_solid, parameters_of, plt, read_grid,
-                          use_units)
+                          use_declared)
 from panels import inches_from
 from solution_figures import outline
 
@@ -230,7 +230,7 @@ def read_bodies(path):
 
 
 def draw(path, case, png):
-    use_units(path)
+    use_declared(case.get("units"))
     bodies = read_bodies(path)
     figure = figure_of(bodies, case)
     figure.savefig(png, dpi=150, bbox_inches="tight", pad_inches=0.02)

@@ -92,34 +92,64 @@ def contact_names(run):
     return dict(enumerate(names, 1))
 
 
-UNITS = {"length": "m", "stress": "Pa"}  # of what is drawn: use_units()
+UNITS = {"length": "", "stress": ""}  # of what is drawn, "" where the case declares none: use_units()
 PREFIXES = {-9: "n", -6: "u", -3: "m", -2: "c", -1: "d", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 
 
-def use_units(source):
-    """Those of a run, or of a VTU file: the units of the case, of the international system where it
-    declares none. What cannot be read is told where it is drawn."""
-    try:
-        if source.suffix == ".vtu":
-            units = read_grid(source).units
-            UNITS["length"] = units["points"]
-            UNITS["stress"] = units.get("von_mises", UNITS["stress"])
-            return
-        declared = {path[1]: text for path, text in tree_of(source) if path[0] == "units"}
-    except (Missing, OSError, KeyError):
+def run_of(path):
+    """The run that a VTU file is in."""
+    return path.parent.parent if path.parent.name == "verify" else path.parent
+
+
+def declared_units(run):
+    """Quantity -> unit of the case of a model; nothing where it declares none."""
+    return {path[1]: text for path, text in tree_of(run) if path[0] == "units"}
+
+
+def use_declared(units):
+    """Those of a case: what declares none has none."""
+    UNITS.update(length="", stress="")
+    if not units:
         return
     powers = {prefix: power for power, prefix in PREFIXES.items()}
-    length, force = (powers[declared.get(*of)[:-1]] for of in (("length", "m"), ("force", "N")))
+    length, force = (powers[units[name][:-1]] for name in ("length", "force"))
     for name, unit, power in (("length", "m", length), ("stress", "Pa", force - 2 * length)):
         UNITS[name] = PREFIXES.get(power, f"1e{power} ") + unit
 
 
+def use_units(source):
+    """Those of the case of a run; of a VTU file without a model beside it, those in the file. What cannot be
+    read is told where it is drawn."""
+    run, path = (run_of(source), source) if source.suffix == ".vtu" else (source, source / "u.vtu")
+    use_declared({})
+    try:
+        if (run / "model.h5").is_file():
+            use_declared(declared_units(run))
+            return
+        units = {}
+        for file in (path, *path.parent.glob(f"{path.stem}_contact*.vtu")):
+            units.update(read_grid(file).units)
+        UNITS.update(length=units["points"].strip("-"), stress=units.get("pressure", "").strip("-"))
+    except (Missing, OSError, KeyError):
+        return
+
+
+def label_in(what, name):
+    """"x (mm)"; "x" of a case without units."""
+    return f"{name} ({UNITS[what]})" if UNITS[what] else name
+
+
 def in_length(name):
-    return f"{name} ({UNITS['length']})"
+    return label_in("length", name)
 
 
 def in_stress(name):
-    return f"{name} ({UNITS['stress']})"
+    return label_in("stress", name)
+
+
+def amount(number, what):
+    """"0.2 mm"."""
+    return f"{number:.3g} {UNITS[what]}".strip()
 
 
 def wider(points):

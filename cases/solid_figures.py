@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 
-from figure_tools import UNITS
+from figure_tools import amount
 
 FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])  # of a tetrahedron, anticlockwise from outside
 VIEWS = [(azimuth, elevation) for elevation in (35, -35) for azimuth in (-60, 30, 120, -150)]  # degrees
@@ -164,7 +164,7 @@ def draw_axes(axis, view, drawn, size):
     for name, way in zip("xyz", ways):
         axis.annotate("", start + way, start, arrowprops=ARROW)
         axis.text(*(start + 1.35 * way), name, ha="center", va="center")
-    axis.text(corner[0] + room[0] / 2, corner[1], f"{arm:g} {UNITS['length']}", ha="center", va="bottom")
+    axis.text(corner[0] + room[0] / 2, corner[1], amount(arm, "length"), ha="center", va="bottom")
     low, high = np.minimum(drawn.min(axis=0), corner), np.maximum(drawn.max(axis=0), corner + room)
     axis.set(xlim=(low[0] - margin / 2, high[0] + margin / 2), ylim=(low[1] - margin / 2, high[1] + margin / 2),
              xticks=[], yticks=[], aspect="equal", anchor="N")

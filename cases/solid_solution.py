@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 
-from figure_tools import GREEN, ORANGE, PURPLE, SHADES, UNITS, in_stress, von_mises
+from figure_tools import GREEN, ORANGE, PURPLE, SHADES, amount, in_stress, von_mises
 from panels import Drawn, Triangles, colour_bar, legend_below
 from solid_figures import draw_lines, draw_skin, edge_of, plan_of, skin_of, view_of, zone_of
 
@@ -62,7 +62,7 @@ def draw_tractions(surface, plan, size, axis):
     slipping, sticking, tractions = tangential_of(surface)
     x, ways = plan.flat(surface.points), plan.flat(tractions)
     longest = np.linalg.norm(tractions, axis=1).max()
-    said, handles = f"tangential stress, the longest {longest:.3g} {UNITS['stress']}", []
+    said, handles = f"tangential stress, the longest {amount(longest, 'stress')}", []
     for some, what, colour, marker in ((slipping, "slips", PURPLE, ">"), (sticking, "sticks", GREEN, "o")):
         nodes = thinned(some, x, size / ARROWS)
         if len(nodes) == 0:
@@ -90,7 +90,7 @@ def contact_panel(surface, name):
     x = plan.flat(surface.points)
     zone = zone_of(x, pressure > 0)
     size = np.max(zone[1] - zone[0])
-    peak = f"peak {pressure.max():.3g} {UNITS['stress']}" if pressure.max() > 0 else "open"
+    peak = f"peak {amount(pressure.max(), 'stress')}" if pressure.max() > 0 else "open"
     return Triangles(", ".join(filter(None, (name or "contact", f"seen along {plan.along}", peak))), x,
                      surface.corners, pressure, in_stress("pressure"), (0, pressure.max() or 1), frame=zone,
                      axes=plan.names, over=partial(draw_over, surface, plan, size))

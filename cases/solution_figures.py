@@ -6,8 +6,8 @@ from functools import partial
 import numpy as np
 from matplotlib.patches import Rectangle
 
-from figure_tools import (GREEN, ORANGE, PURPLE, SHADES, UNITS, Missing, in_length, in_stress, is_solid,
-                          parameters_of, read_grid, von_mises, wider)
+from figure_tools import (GREEN, ORANGE, PURPLE, SHADES, Missing, amount, in_length, in_stress, is_solid,
+                          parameters_of, read_grid, run_of, von_mises, wider)
 from panels import Curve, Drawn, Lines, Triangles, legend_below, ratio_of, save_panels
 from solid_figures import round_length
 from solid_solution import solid_panels
@@ -216,7 +216,7 @@ def contact_panel(curve, title, displacement):
     """Pressure, with friction the tangential stress, and the gap along a contact curve."""
     where = "on edges" if "pressure" in curve.of_cells else "at nodes"
     x, y = along(curve, "pressure")
-    title += f", peak {y.max():.3g} {UNITS['stress']}"
+    title += f", peak {amount(y.max(), 'stress')}"
     curves = [Curve(x, y, f"pressure {where}")]
     if "tangential_stress" in curve.of_nodes:
         curves.append(Curve(*along(curve, "tangential_stress"), "tangential stress", GREEN))
@@ -257,6 +257,5 @@ def solution_panels(path):
 def solution(path):
     """One answer, of the file u.vtu: the membrane and its pressure (Niakh 2022, figure 2.4), or
     bodies, their stress and the pressure between them (figure 2.10)."""
-    run = path.parent.parent if path.parent.name == "verify" else path.parent
-    return save_panels(run / "figures", "solution.png", solution_panels(path),
+    return save_panels(run_of(path) / "figures", "solution.png", solution_panels(path),
                        parameters_of(read_grid(path)))

@@ -28,7 +28,7 @@ def drawn(configuration, rbvi, folder, case):
         path = Path(scratch) / "u.vtu"
         subprocess.run([rbvi, "check", str(folder), "-vtu", str(path), *COARSE.get(folder.name, [])], check=True,
                        stdout=subprocess.DEVNULL)
-        configuration.use_units(path)
+        configuration.use_declared(case.get("units"))
         bodies = configuration.read_bodies(path)
         return bodies, configuration.figure_of(bodies, case)
 
@@ -68,8 +68,8 @@ def wrong_with(bodies, figure, case, picture):
         for one, other in combinations(texts, 2):
             if one.get_window_extent().overlaps(other.get_window_extent()):
                 wrong.append(f"'{one.get_text()}' covers '{other.get_text()}'")
-        if not axis.get_xlabel().endswith(")"):
-            wrong.append(f"no unit in '{axis.get_xlabel()}'")
+        if axis.get_xlabel().endswith(")") != ("units" in case):
+            wrong.append(f"'{axis.get_xlabel()}' has a unit, or none, and the case declares none, or some")
     wrong += [f"'{name}' is not in the picture" for name in expected(bodies, case) - found]
     return wrong + wrong_size(picture)
 

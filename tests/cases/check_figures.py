@@ -7,6 +7,7 @@ scene and formulation. A damaged file leaves the other figures (in SCRATCH).
 
 import csv
 import os
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -18,7 +19,7 @@ sys.path[:0] = [str(ROOT / "cases"), str(ROOT / "tests/docs"), str(ROOT / "tests
 
 import figures
 from case_figures import case_panels
-from figure_tools import is_solid, plt, read_grid, table
+from figure_tools import UNITS, is_solid, plt, read_grid, table, use_units
 from model_figures import drawn_outputs, output_panels, places_of, stress_panels
 from panels import Lines, Triangles, figure_of, shown, with_values
 from small_runs import CHECKED, RUNS
@@ -33,6 +34,7 @@ FORCE_TOLERANCE = {"multipliers": 1e-3, "nitsche": 0.05}
 
 # Files of partners: the obstacle moves with its membrane, and the second plate of the roller is fixed.
 PLACES = {"membrane_obstacle": 1, "two_disks": 3, "roller": 4, "rigid_ball": 3}
+OF_SIZES = re.compile(r"\((m|Pa)\)$")  # units of lengths and stresses, where these runs declare some
 
 
 class Checks:
@@ -55,7 +57,8 @@ def check_lines(check, panel, name):
         hidden = np.isfinite(y) & ~np.isfinite(drawn)
         check.that(not np.any(hidden & (y >= panel.floor)), f"{name}: {curve.label} is not drawn")
         check.that(not (panel.log and np.any(drawn < panel.floor)), f"{name}: zero is drawn")
-    check.that(panel.ylabel.endswith(")"), f"{name}: no unit in {panel.ylabel}")
+    check.that(panel.ylabel.endswith(")") if UNITS["length"] else not OF_SIZES.search(panel.ylabel),
+               f"{name}: a unit, or none, in {panel.ylabel}")
     check.that("(" not in panel.title or panel.title.endswith(")"), f"{name}: title")
 
 
@@ -132,6 +135,7 @@ def check_partners(check, grid, name):
 
 def check_case(check, path):
     """What rbvi check draws: the surface has its groups, contacts their partners."""
+    use_units(path)
     name, (panels, words) = path.parent.name, case_panels(path)
     check_panels(check, panels, f"{name}, case")
     files = list(path.parent.glob("u_partners*.vtu"))
@@ -162,6 +166,7 @@ def check_skin(check, grid, name):
 def check_answer(check, run):
     """Pressures that are drawn, over all interfaces, have the normal force of the answer as their
     integral; gaps are closed below them."""
+    use_units(run / "u.vtu")
     grid, panels = read_grid(run / "u.vtu"), solution_panels(run / "u.vtu")
     check_panels(check, panels, f"{run.name}, solution", run.name.split("_")[0])
     with open(run / "solve.csv", encoding="utf-8", newline="") as file:
@@ -251,7 +256,17 @@ def check_model(check, run):
     check.that(max(peaks) == np.max(np.concatenate(drawn)) > 0, f"{run.name}: pressures {peaks}")
 
 
+def check_units(check, run):
+    """Axes have units where the case declares some, and nowhere else: of the block it declares none."""
+    use_units(run)
+    declares = "units:" in (run / "scene.yaml").read_text(encoding="utf-8")
+    check.that(declares == (run.name != "free_block"), f"{run.name}: whether its case declares units")
+    check.that(UNITS == ({"length": "m", "stress": "Pa"} if declares else {"length": "", "stress": ""}),
+               f"{run.name}: units {UNITS}")
+
+
 def check_run(check, run):
+    check_units(check, run)
     check_answer(check, run)
     check_errors(check, run)
     check_model(check, run)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from figure_tools import BLUE, GREEN, GREY, ORANGE, PURPLE, history, table
+from figure_tools import BLUE, GREEN, GREY, ORANGE, PURPLE, history, table, use_units
 from figures import contact_regions, mesh_quality_panels
 from panels import Curve, Drawn, Lines, Triangles, legend_below, save_panels
 from study_panels import (above, along_size, constants_panel, greedy_panels, share_decades, sorted_places,
@@ -172,6 +172,7 @@ def pressures(runs, directory):
 
 
 def draw_all(runs, summary, directory):
+    use_units(next(iter(runs.values())))
     bases(runs, directory)
     floors(runs, summary, directory)
     greedy(runs, directory)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from figure_tools import BLUE, GREEN, GREY, ORANGE, PURPLE, in_length, read_grid, table
+from figure_tools import BLUE, GREEN, GREY, ORANGE, PURPLE, in_length, read_grid, table, use_units
 from large_study import (CONES, DEPTHS, EDGES, INITIAL_GAP, KINDS, LEVELS, METHODS, OFFSETS,
                          deepest_nodes, error_map, penetration)
 from panels import ZERO, Curve, Lines, save_panels
@@ -135,6 +135,7 @@ def errors(runs, directory):
 
 
 def draw_all(study, answers, runs, directory):
+    use_units(next(iter(runs.values())))
     deformed(study, directory)
     forces(study, answers, directory)
     pressures(study, directory)

@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, history, in_length,
-                          read_grid)
+                          read_grid, use_units)
 from nitsche_study import EIM_ERRORS, GAMMA0, GENERATORS, LAWS, RADII, RULES, SIZES, error_map
 from panels import Curve, Lines, save_panels
 from study_panels import along_size, level, over_disk, pale, share_decades
@@ -164,6 +164,7 @@ def mixed(runs, directory):
 
 
 def draw_all(study, runs, directory):
+    use_units(next(iter(runs.values())))
     directory.mkdir(exist_ok=True)
     deformed(study, directory)
     normal_stress(study, directory)

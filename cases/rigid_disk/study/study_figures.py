@@ -6,7 +6,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from figure_tools import BLUE, GREEN, GREY, ORANGE, PURPLE, history, in_length, read_grid
+from figure_tools import BLUE, GREEN, GREY, ORANGE, PURPLE, history, in_length, read_grid, use_units
 from panels import Curve, Drawn, Lines, legend_below, save_panels
 from solution_figures import draw_mesh
 from study_panels import along_size, level, over_disk, pale, published, room_of
@@ -185,6 +185,7 @@ def configurations(directory, radius="0.7"):
 
 
 def draw_all(study, runs, directory):
+    use_units(next(iter(runs.values())))
     directory.mkdir(exist_ok=True)
     for radius in RADII:
         study.call("solve", "-case", *study.case, "-mu", radius, "-vtu",

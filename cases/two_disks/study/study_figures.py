@@ -6,7 +6,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from figure_tools import BLUE, GREEN, GREY, ORANGE, PURPLE, SHADES, history, in_length, read_grid, table
+from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, SHADES, history, in_length, read_grid, table,
+                          use_units)
 from panels import ZERO, Curve, Drawn, Lines, Triangles, ratio_of, save_panels
 from solution_figures import along, contact_grids, draw_mesh, positions_of, scale_of
 from study_panels import above, along_size, constants_panel, greedy_panels, share_decades, tolerance_panel
@@ -112,6 +113,7 @@ def constants(runs, directory):
 
 
 def draw_all(study, runs, directory):
+    use_units(next(iter(runs.values())))
     directory.mkdir(exist_ok=True)
     solution(study, directory)
     bases(runs, directory)
