@@ -1,13 +1,19 @@
 #!/usr/bin/env python3
 """Figures of a run: figures.py RUN_DIR writes PNG and PDF files into RUN_DIR/figures; figures.py
 DIR/u.vtu draws that answer alone, into DIR/figures; figures.py RUN RUN ... draws the errors of
-several runs that were verified over time and size, into figures beside them.
+several runs that were verified over time and size, into figures beside them. Figures of answers that
+rbvi-online gives, into RUN_DIR/figures:
+
+figures.py RUN_DIR --map OUTPUT X Y [--at NAME=VALUE,...]   an output over two parameters, with lines
+                              where contact states change, the others as given or in the middle
+figures.py RUN_DIR --sobol OUTPUT ...                       Sobol's indices of outputs
+figures.py RUN_DIR --at NAME=VALUE,... [--at ...]           stresses over the contacts there
 
 Reads RUN_DIR/model.h5 and samples.csv (rbvi offline), RUN_DIR/verify/*.csv (rbvi verify),
 RUN_DIR/u.vtu with the contact files beside it (rbvi-online --vtu, or rbvi solve -vtu; of rbvi check
 -vtu also its mesh and the partners of its contacts), without it that of rbvi verify at the middle
-of the box, and, if it is there, RUN_DIR/bench/table.csv (rbvi bench). What else is missing, and what cannot be drawn, is named and left
-out; the exit status is then 1.
+of the box, and, if it is there, RUN_DIR/bench/table.csv (rbvi bench). What else is missing, and what
+cannot be drawn, is named and left out; the exit status is then 1.
 """
 
 import sys
@@ -16,6 +22,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from asked_figures import asked, options_of
 from bench_figures import bench
 from case_figures import case
 from compare_figures import compare
@@ -348,18 +355,16 @@ def draw_all(figures, source):
         except Exception as error:  # a file that is damaged does not keep the others from being drawn
             problems = [f"cannot be drawn: {error or type(error).__name__}"]
         for problem in problems:
-            print(f"figures.py: {draw.__name__}: {problem}", file=sys.stderr)
+            print(f"figures.py: {getattr(draw, 'func', draw).__name__}: {problem}", file=sys.stderr)
             status = 1
     return status
 
 
 def main(arguments):
-    if not arguments or any(argument.startswith("-") for argument in arguments):
-        print("usage: figures.py RUN_DIR | DIR/u.vtu | RUN_DIR RUN_DIR ...", file=sys.stderr)
-        return 2
-    if len(arguments) > 1:
-        return draw_all((compare,), list(map(Path, arguments)))
-    run = Path(arguments[0])
+    given = options_of(arguments)
+    if len(given.runs) > 1:
+        return draw_all((compare,), given.runs)
+    run = given.runs[0]
     if run.suffix == ".vtu":
         use_units(run)
         return draw_all((case, solution), run)
@@ -367,6 +372,8 @@ def main(arguments):
         print(f"figures.py: there is no run directory {run}", file=sys.stderr)
         return 2
     use_units(run)
+    if asked(given):
+        return draw_all(asked(given), run)
     of_answer = draw_all((case, solution), next((run / place for place in ("u.vtu", "verify/u.vtu")
                                                  if (run / place).is_file()), run / "u.vtu"))
     return max(of_answer, draw_all((bases, outputs, stresses, pressure, infsup, error_map,

@@ -50,16 +50,27 @@ class Region(NamedTuple):
                          label, limits, frame=frame, axes=self.plan.names, **more)
 
 
+def is_area(mesh):
+    """Whether an interface of a model has triangles."""
+    _, degree, _, nodes = mesh["sizes"][()].ravel()
+    return nodes == (3 if degree == 1 else 6) and mesh["edges"].size == 0
+
+
+def has_areas(run):
+    """Whether contact is over areas."""
+    with h5py.File(run / "model.h5", "r") as model:
+        return is_area(model["interfaces/0"])
+
+
 def contact_regions(run, data):
     """The contacts over areas in a table; none where contact is along curves."""
     names, regions = contact_names(run), []
     with h5py.File(run / "model.h5", "r") as model:
         for number in np.unique(data["interface"]).astype(int):
             mesh = model[f"interfaces/{number - 1}"]
-            _, degree, _, nodes = mesh["sizes"][()].ravel()
-            if nodes != (3 if degree == 1 else 6) or mesh["edges"].size > 0:
+            if not is_area(mesh):
                 continue
-            x, cells = mesh["points"][()], mesh["entities"][()].reshape(-1, nodes)[:, :3]
+            x, cells = mesh["points"][()], mesh["entities"][()].reshape(-1, mesh["sizes"][()].ravel()[3])[:, :3]
             solid = x.shape[1] == 3
             plan = plan_of(x, cells) if solid else FROM_ABOVE
             rows = np.flatnonzero(data["interface"] == number)
@@ -163,6 +174,24 @@ def training_pressures(run, rows):
     return found if fits else {}
 
 
+def profile(x, pressure, tangential, label, colour):
+    """Curves of the pressure and, dashed, of a tangential stress along a contact."""
+    order = np.argsort(x)
+    curves = [Curve(x[order], pressure[order], label, colour)]
+    return curves + [Curve(x[order], tangential[order], "", colour, "--")] * bool(np.any(tangential))
+
+
+def behind(samples):
+    """Curves of the pressures of training samples, (x, pressure) each."""
+    return [Curve(np.sort(x), pressure[np.argsort(x)], "" if k else "training samples", "#cccccc", width=0.7)
+            for k, (x, pressure) in enumerate(samples)]
+
+
+def profile_panel(title, over, curves):
+    rubs = any(curve.style == "--" for curve in curves)
+    return Lines(title, in_length(over), in_stress("pressure" + "; dashed: tangential stress" * rubs), curves)
+
+
 def stress_panels(run, rows):
     """A panel for each contact along a curve; of a region one for each place, two with friction."""
     contacts, panels = contact_names(run), []
@@ -174,20 +203,12 @@ def stress_panels(run, rows):
                 for region in regions for place, own in rows.items() for kind in kinds]
     training = training_pressures(run, rows)
     for number in np.unique(rows[next(iter(rows))]["interface"]).astype(int):
-        curves, over, behind = [], "x", training.get(number, [])
-        for place, of_place in rows.items():
-            own = of_place[of_place["interface"] == number]
-            x, over = wider(np.column_stack([own["x"], own["y"]]))
-            order = np.argsort(x)
-            curves += [Curve(x[order], pressure[order], "" if k else "training samples", "#cccccc", width=0.7)
-                       for k, pressure in enumerate(behind)]
-            behind = []
-            curves.append(Curve(x[order], own["pressure"][order], place, PLACES[place]))
-            if np.any(own["tangential"]):
-                curves.append(Curve(x[order], own["tangential"][order], "", PLACES[place], "--"))
-        panels.append(Lines(contacts.get(number, f"contact {number}"),
-                            in_length(over + ", reference domain"),
-                            in_stress("pressure; dashed: tangential stress"), curves))
+        own = {place: of_place[of_place["interface"] == number] for place, of_place in rows.items()}
+        x, over = wider(np.column_stack([next(iter(own.values()))[name] for name in "xy"]))
+        curves = behind([(x, pressure) for pressure in training.get(number, [])])
+        for place, of_place in own.items():
+            curves += profile(x, of_place["pressure"], of_place["tangential"], place, PLACES[place])
+        panels.append(profile_panel(contacts.get(number, f"contact {number}"), over + ", reference domain", curves))
     return panels
 
 

@@ -230,7 +230,8 @@ def legend_below(axis, handles):
     for handle in handles:
         handle.set_label(fitting(handle.get_label()))
     labels = [handle.get_label() for handle in handles]
-    lines = 1 + axis.get_xlabel().count("\n") + 4 * len(axis.child_axes)  # a colour bar
+    ticks = max((text.get_text().count("\n") for text in axis.get_xticklabels()), default=0)
+    lines = bool(axis.get_xlabel()) + axis.get_xlabel().count("\n") + ticks + 4 * len(axis.child_axes)  # a colour bar
     axis.legend(handles=handles, loc="upper left", bbox_to_anchor=(-0.3, -0.36 - LINE * lines),
                 bbox_transform=inches_from(axis), borderpad=0, borderaxespad=0,
                 ncols=2 if len(labels) > 3 and max(map(len, labels)) < 13 else 1)

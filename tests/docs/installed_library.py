@@ -115,6 +115,10 @@ def main(build, source, models, cmake):
         run(prefix / "bin/rbvi-figures", work / "run")
         if not (work / "run/figures/outputs.png").is_file():
             sys.exit("rbvi-figures draws no outputs")
+        run(prefix / "bin/rbvi-figures", work / "run", "--map", "normal_force", "radius", "core_stiffness")
+        run(prefix / "bin/rbvi-figures", work / "run", "--sobol", "normal_force")
+        if not all((work / f"run/figures/{name}.png").is_file() for name in ("map_normal_force", "sobol")):
+            sys.exit("rbvi-figures draws no answers")
 
 
 if __name__ == "__main__":

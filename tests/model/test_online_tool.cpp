@@ -484,7 +484,7 @@ TEST_F(OnlineBinary, OneAnswerAsJson) {
   EXPECT_LE(number_behind(run.out, R"(}}, "residual": )"), 1e-10);
   for (const char *part :
        {R"({"parameters": {"radius": {"value": 0.18, "unit": "m"}, "center_x": )",
-        R"(, "unit": "", "expected_error": 2e-05}, "normal_force": {"value": )",
+        R"(, "unit": "m*N", "expected_error": 2e-05}, "normal_force": {"value": )",
         R"("inside": true, "to_other": 0, "warnings": ["warning: contact reaches the end)"})
     EXPECT_TRUE(contains(run.out, part)) << part << " in\n" << run.out;
   EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '{'),

@@ -8,8 +8,10 @@ from math import pi
 from pathlib import Path
 
 import numpy as np
+from matplotlib.colors import to_rgb
 
 import rbvi
+from rbvi._drawing import PURPLE, STATES, grid_of, steps_between
 from rbvi._sensitivity import indices
 
 ROOT, MODELS = Path(__file__).resolve().parents[2], Path(sys.argv[1])
@@ -18,6 +20,13 @@ sys.path[:0] = [str(ROOT / "tests/cases")]
 from check_print import problems  # noqa: E402
 
 OUTPUTS = ["normal_force", "peak_pressure", "energy"]
+
+
+def lines_of(axes, colour):
+    """Points of the contour lines of this colour, of each level."""
+    return [np.concatenate([path.vertices for path in one.get_paths()]) for one in axes.collections
+            if len(one.get_facecolor()) == 0 and one.get_paths()
+            and to_rgb(one.get_edgecolor()[0][:3]) == to_rgb(colour)]
 
 
 class Sensitivities(unittest.TestCase):
@@ -69,13 +78,36 @@ class Figures(unittest.TestCase):
             drawn = np.column_stack(axes.lines[-1].get_data())
             np.testing.assert_allclose(drawn, model.samples[:, :2])
             self.assertEqual(axes.get_xlim(), (model.parameters[x].lower, model.parameters[x].upper))
-            contours = [np.concatenate([path.vertices for path in one.get_paths()]) for one in axes.collections
-                        if len(one.get_facecolor()) == 0 and one.get_paths()]
+            contours = lines_of(axes, "black")
             forces = [model.table({x: at[:, 0], y: at[:, 1]})["normal_force"] for at in contours]
             self.assertGreater(len(forces), 3)
             step = np.diff([of.mean() for of in forces])
             self.assertTrue(np.all(step > 0), step)
             self.assertLess(max(np.ptp(of) for of in forces), 0.2 * step.min())
+
+    def test_a_map_tells_where_nodes_touch_and_stick(self):
+        """On both sides of a line the output is another one, and somewhere a node touches or lifts."""
+        model = rbvi.Model(MODELS / "roller/model.h5")
+        x, y = list(model.parameters)[:2]
+        axes = model.map("normal_force", count=25, samples=False)
+        lines = lines_of(axes, PURPLE)
+        self.assertGreater(len(lines), 1)
+        cell = np.array([np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())]) / 24
+        for at in lines:
+            around = np.concatenate([np.clip(at[:20] + way * cell, *np.array([axes.get_xlim(), axes.get_ylim()]).T)
+                                     for way in ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1))])
+            table = model.table({x: around[:, 0], y: around[:, 1]})
+            self.assertTrue(any(np.ptp(table[name]) > 0 for name in STATES))
+        words = [text.get_text() for text in axes.get_legend().get_texts()]
+        for name, line in zip(STATES, words):
+            grid = model.table(dict(zip((x, y), grid_of([axes.get_xlim(), axes.get_ylim()], 25))))[name]
+            self.assertIn(f"{name.replace('_', ' ')} {grid.min():.0f} to {grid.max():.0f}", line)
+
+    def test_steps_between_whole_numbers(self):
+        for low, high in ((0, 1), (3, 4), (0, 8), (5, 230), (0, 20), (7, 7.5)):
+            levels, every = steps_between(low, high)
+            self.assertTrue(np.all((levels > low) & (levels < high)) and len(levels) <= 10, levels)
+            self.assertTrue(np.all(levels % 1 == 0.5) and (every > 1 or len(levels) == int(high - low)), levels)
 
     def test_what_is_no_map(self):
         model = rbvi.Model(MODELS / "disk_condensed/model.h5")

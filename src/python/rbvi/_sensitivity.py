@@ -1,8 +1,7 @@
-"""Sobol's indices: which parameter an output varies with."""
+"""Sobol's indices: which parameter an output varies with. The figures of cases/ take them from here, too,
+without the rest of this package."""
 
 import numpy as np
-
-from ._library import NoAnswer
 
 RESAMPLES = 200  # of the points, for the deviations of the indices
 
@@ -38,25 +37,16 @@ def indices(evaluate, lower, upper, count, seed):
 
 
 class Sensitivity:
-    """Sobol's indices of outputs over the box of a model: s.first["normal_force"]["depth"], the share of the
+    """Sobol's indices of outputs over a box: s.first["normal_force"]["depth"], the share of the
     variance of the output that goes with this parameter alone; s.total[...][...], with all that it takes
     part in; s.first_error, s.total_error, their standard deviations; s.plot(). NaN of an output that
     is constant."""
 
-    def __init__(self, model, outputs, count, seed):
-        parameters = model.parameters.values()
-
-        def evaluate(rows):
-            table = model.table(rows)
-            if not table.ok.all():
-                first = int(np.argmin(table.ok))
-                raise NoAnswer(f"{np.count_nonzero(~table.ok)} of {len(table)} points have no answer; the "
-                               f"first: {table.status[first]}")
-            return np.column_stack([table[name] for name in outputs])
-
-        found = indices(evaluate, [one.lower for one in parameters], [one.upper for one in parameters], count,
-                        seed)
-        names = list(model.parameters)
+    def __init__(self, evaluate, box, outputs, count, seed):
+        """`box`: parameter -> (lower, upper); `evaluate`: points, rows of the parameters, -> rows of the
+        outputs."""
+        names, ends = list(box), np.array(list(box.values()), float).T
+        found = indices(evaluate, *ends, count, seed)
         self.first, self.total, self.first_error, self.total_error = (
             {output: dict(zip(names, map(float, values[:, k]))) for k, output in enumerate(outputs)}
             for values in found)

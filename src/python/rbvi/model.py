@@ -320,8 +320,9 @@ class Model:
 
     def map(self, output, x=None, y=None, samples=True, count=41, axes=None, **parameters):
         """An output over two parameters as colours and contours, in matplotlib, with the training samples
-        (`samples`: True those of the model, False none, else rows of the parameters); `x`, `y`: the first
-        two parameters without a value among `parameters`. Returns the axes."""
+        (`samples`: True those of the model, False none, else rows of the parameters) and lines where numbers
+        of nodes in contact, or of those that stick, change; `x`, `y`: the first two parameters without a
+        value among `parameters`. Returns the axes."""
         from ._figures import parameter_map
         self._mu(parameters)  # names
         free = [name for name in self.parameters if name not in parameters and name not in (x, y)]
@@ -339,7 +340,16 @@ class Model:
         names = [outputs] if isinstance(outputs, str) else list(outputs or self.outputs)
         for name in names:
             self.outputs[name]  # refuses an unknown one
-        return Sensitivity(self, names, count, seed)
+        return Sensitivity(lambda rows: self._columns(rows, names), {
+            name: (one.lower, one.upper) for name, one in self.parameters.items()}, names, count, seed)
+
+    def _columns(self, rows, outputs):
+        """Outputs at these parameters, points x outputs; NoAnswer where a point has none."""
+        table = self.table(rows)
+        if not table.ok.all():
+            raise library.NoAnswer(f"{np.count_nonzero(~table.ok)} of {len(table)} points have no answer; the "
+                                   f"first: {table.status[int(np.argmin(table.ok))]}")
+        return np.column_stack([table[name] for name in outputs])
 
     def plot(self, output, x=None, count=101, axes=None, **parameters):
         """An output over a parameter, with the band of its largest error, in matplotlib; `x`: the
