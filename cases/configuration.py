@@ -190,8 +190,8 @@ def draw_from_above(axis, bodies, grid, name, boundary, held, what):
     draw_held(axis, boundary, what, bodies.size)
     frame(axis, 0.1 * bodies.size)
     axis.figure.canvas.draw()
-    axis.text(*grid.points[:, :2].mean(axis=0), name, color=BLUE, ha="center", va="center",
-              zorder=9)
+    axis.text(grid.points[:, 0].mean(), grid.points[:, 1].min() - 0.03 * bodies.size, name, color=BLUE, ha="center",
+              va="top", zorder=9)
     axis.text(0, bodies.points[:, 1].max() + 0.05 * bodies.size, held, color=HELD,
               ha="center")
     axis.set(xlabel=in_length("x"), ylabel=in_length("y"))

@@ -247,7 +247,7 @@ def von_mises(grid, inside):
     top = stress[inside].max() if inside.any() else stress.max()
     where = "inside" if is_solid(grid) else "elsewhere"
     more = f"; {where} up to {stress.max():.3g}" if stress.max() > 1.005 * top else ""
-    return in_stress("von Mises stress at centres of cells" + more), (0, top or 1)
+    return in_stress("von Mises stress of cells" + more), (0, top or 1)
 
 
 def beside(path, suffix):

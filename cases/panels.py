@@ -3,10 +3,11 @@
 import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.ticker import MaxNLocator, NullFormatter
-from matplotlib.transforms import ScaledTranslation
+from matplotlib.transforms import ScaledTranslation, blended_transform_factory
 
 from figure_tools import BLUE, COLUMN, GREY, LINE, WIDTH, label_plane, log_axis, plt, save
 
@@ -151,6 +152,7 @@ class Triangles:
                                 rasterized=True, **shading)
         filled.set_clim(*self.limits)
         label_plane(axis, self.axes)
+        axis.set_anchor("NW")
         if self.frame is not None:
             (left, low), (right, high) = self.frame
             axis.set(xlim=(left, right), ylim=(low, high))
@@ -214,14 +216,18 @@ def inches_from(axis):
 
 
 def colour_bar(figure, axis, filled, label, ratio, start=0):
-    """Below what is wide, `start` inches from its left, at the right of what is high."""
-    below = ratio < 1.3
-    place = (axis.inset_axes((start, -0.62, 1.5, 0.09), transform=inches_from(axis)) if below else
+    """Below what is wide, as wide but for a share `start` at both ends, at the right of what is high."""
+    below = ratio < 1.5
+    place = (axis.inset_axes((start, -0.62, 1 - 2 * start, 0.09),
+                             transform=blended_transform_factory(axis.transAxes, inches_from(axis))) if below else
              axis.inset_axes((1.08, 0.05, 0.1, 0.9)))
     bar = figure.colorbar(filled, cax=place, orientation="horizontal" if below else "vertical", format="%.3g")
     bar.locator = MaxNLocator(3 if below else 4)
     bar.update_ticks()
-    bar.set_label(fitting(label, 24))
+    if below:  # a text, which the layout makes room for, as it does not for a wide label
+        place.annotate(fitting(label, 27), (0, 0), (0, -19), "axes fraction", "offset points", va="top")
+    else:
+        bar.set_label(fitting(label, 24))
     place.grid(False)
 
 
@@ -238,11 +244,14 @@ def legend_below(axis, handles):
 
 
 def show_constants(axis):
-    """Numbers at the axis have no offset. Values that differ by round-off alone are drawn as the
-    constant that they are, over an axis that holds zero."""
-    axis.ticklabel_format(axis="y", useOffset=False)
+    """Numbers at the axis have no offset and no common factor. Values that differ by round-off alone are
+    drawn as the constant that they are, over an axis that holds zero."""
     low, high = axis.dataLim.intervaly
     size = max(abs(low), abs(high))
+    if 1e-3 <= size < 1e6:
+        axis.ticklabel_format(axis="y", useOffset=False)
+    else:
+        axis.yaxis.set_major_formatter(lambda number, _: f"{number:.6g}")
     if np.isfinite(size) and high - low <= ROUND_OFF * size:
         least = 0.1 * size or 1
         axis.set_ylim(min(1.2 * low, -least), max(1.2 * high, least))
@@ -276,36 +285,60 @@ def share_legend(figure, axes):
     return legend_height(list(handles), columns) + 0.1
 
 
-def add_axes(figure, panels):
+class Stack(NamedTuple):
+    """Rows of panels, one above another: a grid, and the numbers of the panels of each row."""
+    grid: object
+    rows: list
+
+
+def height_of(panel, width, legend=None):
+    """In inches: what is drawn, the text around it and its legend."""
+    below = legend_height([text.get_text() for text in legend.get_texts()], legend._ncols) if legend else 0
+    return 0.9 + 0.68 * width * panel.ratio + below + 0.2 * (panel.ratio < 0.6)
+
+
+def in_rows(figure, panels):
     """Two in a row; the last of an odd number has a row of its own."""
     columns = min(2, len(panels))
-    rows = -(-len(panels) // columns)
-    grid = figure.add_gridspec(rows, columns)
-    alone = len(panels) - 1 if columns == 2 and len(panels) % 2 else -1
-    axes = [figure.add_subplot(grid[k // columns, :] if k == alone else grid[k // columns, k % columns],
-                               projection=panel.projection) for k, panel in enumerate(panels)]
-    return grid, axes
+    rows = [list(range(k, min(k + columns, len(panels)))) for k in range(0, len(panels), columns)]
+    grid = figure.add_gridspec(len(rows), columns)
+    places = [grid[k, slice(None) if len(row) == 1 else which] for k, row in enumerate(rows)
+              for which in range(len(row))]
+    return [Stack(grid, rows)], places
 
 
-def row_heights(panels, axes, width):
-    """In inches: what is drawn, the text around it and its legend."""
-    columns = min(2, len(panels))
+def in_columns(figure, panels):
+    """Each below what is the least high of two columns, which have no rows in common."""
+    rows, heights = ([], []), [0, 0]
+    for k, panel in enumerate(panels):
+        shorter = int(heights[1] < heights[0])
+        rows[shorter].append([k])
+        heights[shorter] += height_of(panel, WIDTH / 2)
+    outer = figure.add_gridspec(1, 2)
+    stacks = [Stack(outer[0, k].subgridspec(len(own), 1), own) for k, own in enumerate(rows)]
+    places = {row[0]: stack.grid[k] for stack in stacks for k, row in enumerate(stack.rows)}
+    return stacks, [places[k] for k in range(len(panels))]
 
-    def below(axis):
-        legend = axis.get_legend()
-        return legend_height([text.get_text() for text in legend.get_texts()], legend._ncols) if legend else 0
 
-    return [max(0.9 + 0.68 * width / columns * panel.ratio + below(axis) + 0.2 * (panel.ratio < 0.6)
-                for panel, axis in zip(panels[k:k + columns], axes[k:k + columns]))
-            for k in range(0, len(panels), columns)]
+def set_heights(stacks, panels, axes, width):
+    """Heights of all rows; what one column is shorter by, its panels of curves take. Returns the height of all."""
+    heights = [[max(height_of(panels[k], width, axes[k].get_legend()) for k in row) for row in stack.rows]
+               for stack in stacks]
+    most = max(map(sum, heights))
+    for stack, own in zip(stacks, heights):
+        free = [k for k, row in enumerate(stack.rows) if all(isinstance(panels[one], Lines) for one in row)]
+        more = (most - sum(own)) / max(1, len(free))
+        stack.grid.set_height_ratios([height + more * (k in free) for k, height in enumerate(own)])
+    return most
 
 
-def figure_of(panels, subtitle=""):
+def figure_of(panels, subtitle="", arrange=in_rows):
     """A figure, its panels marked (a), (b), ..., and a line for each that could not be drawn: the
     others do not wait for it."""
     figure, failed = plt.figure(constrained_layout=True), []
     width = WIDTH if len(panels) > 1 else COLUMN
-    grid, axes = add_axes(figure, panels)
+    stacks, places = arrange(figure, panels)
+    axes = [figure.add_subplot(place, projection=panel.projection) for place, panel in zip(places, panels)]
     for k, (panel, axis) in enumerate(zip(panels, axes)):
         try:
             panel.draw(figure, axis)
@@ -319,11 +352,9 @@ def figure_of(panels, subtitle=""):
                        loc="left")
     words = "\n".join(fitting(line, int(width * 13)) for line in subtitle.splitlines())
     below, above = share_legend(figure, axes), LINE * (1 + words.count("\n")) + 0.05 if words else 0
-    heights = row_heights(panels, axes, width)
-    height = sum(heights) + below + above
+    height = set_heights(stacks, panels, axes, width / min(2, len(panels))) + below + above
     figure.set_size_inches(width, height)
-    grid.set_height_ratios(heights)
-    figure.get_layout_engine().set(rect=(0, below / height, 1, 1 - (below + above) / height))
+    figure.get_layout_engine().set(rect=(0, below / height, 1, 1 - (below + above) / height), h_pad=0.07)
     figure.text(0.01, 1 - 0.04 / height, words, color=GREY, ha="left", va="top")
     return figure, failed
 
@@ -340,12 +371,12 @@ def with_values(panels):
     return [panel for panel in panels if not panel.empty()], list(words)
 
 
-def save_panels(directory, name, panels, subtitle=""):
+def save_panels(directory, name, panels, subtitle="", arrange=in_rows):
     """Writes the figure; returns a line for each panel that could not be drawn."""
     panels, words = with_values(panels)
     if not panels:
         print(f"{name}: left out, {'; '.join(words) or 'it has no panels'}")
         return []
-    figure, failed = figure_of(panels, "\n".join(filter(None, [subtitle, *words])))
+    figure, failed = figure_of(panels, "\n".join(filter(None, [subtitle, *words])), arrange)
     save(figure, directory, name)
     return failed

@@ -77,7 +77,6 @@ def draw_tractions(surface, plan, size, axis):
 
 
 def draw_over(surface, plan, size, axis):
-    axis.set_anchor("N")
     for segments, style in zip(edges_of(surface, plan.flat(surface.points)), (EDGE, RIM)):
         axis.add_collection(LineCollection(segments, zorder=3, **style))
     return [*draw_tractions(surface, plan, size, axis), *LINES]
@@ -117,7 +116,7 @@ def draw_body(grid, contacts, scale, view, figure, axis):
         moved = surface.points + scale * surface.of_nodes["u"]
         for segments, style in zip(edges_of(surface, moved), (EDGE, RIM)):
             draw_lines(axis, segments, points, skin, view, **style)
-    colour_bar(figure, axis, filled, label, 0.5, 0.35)
+    colour_bar(figure, axis, filled, label, 0.5, 0.12)
     legend_below(axis, list(LINES))
 
 

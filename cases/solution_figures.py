@@ -8,7 +8,8 @@ from matplotlib.patches import Rectangle
 
 from figure_tools import (GREEN, ORANGE, PURPLE, SHADES, Missing, amount, in_length, in_stress, is_solid,
                           parameters_of, read_grid, run_of, von_mises, wider)
-from panels import Curve, Drawn, Lines, Triangles, legend_below, ratio_of, save_panels
+from panels import (Curve, Drawn, Lines, Triangles, in_columns, in_rows, legend_below, ratio_of,
+                    save_panels)
 from solid_figures import round_length
 from solid_solution import solid_panels
 
@@ -49,11 +50,11 @@ def draw_membrane(circle, grid, figure, axis):
     for segment in circle:
         axis.plot(segment[:, 0], segment[:, 1], floor, color=ORANGE, linewidth=1.2)
     axis.set_zlim(floor, max(0, u.max()))
-    axis.set_box_aspect((1, 1, 0.7), zoom=1.0)
+    axis.set_box_aspect((1, 1, 0.7), zoom=1.05)
     axis.view_init(elev=24, azim=-58)
     axis.set_xlabel(in_length("x"))
     axis.set_ylabel(in_length("y"))
-    axis.set_zlabel(in_length("u"), labelpad=0)
+    axis.set_zlabel(in_length("u"), labelpad=-1)
     axis.tick_params(pad=0)
     axis.locator_params(nbins=3)
 
@@ -86,13 +87,24 @@ def draw_mesh(axis, positions, grid, size):
     draw_segments(axis, outline(positions, grid.cells), 0.7, 1)
 
 
+def turns_over(grid, scale):
+    """Whether a triangle of the mesh is turned over where displacements are drawn at this scale."""
+    def areas(x):
+        sides = x[grid.cells[:, 1:]] - x[grid.cells[:, :1]]
+        return sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]
+    return np.any(areas(grid.points) * areas(positions_of(grid, scale)) <= 0)
+
+
 def scale_of(grid, contacts):
     """What displacements are multiplied by where they are drawn: 1 where they can be seen, else 1, 2 or 5
-    times a power of ten, so that bodies with a gap at rest do not overlap."""
+    times a power of ten, so that bodies with a gap at rest do not overlap and no triangle is turned over."""
     size, largest = np.ptp(grid.points, axis=0).max(), np.linalg.norm(grid.of_nodes["u"], axis=1).max()
     gaps = [] if is_solid(grid) else [gap_at_rest(grid, curve) for curve in contacts.values()]
     wanted = min([VISIBLE * size / (largest or size), *(1 + 0.01 * size / max(gap, 1e-9 * size) for gap in gaps)])
-    return 1 if wanted < 2 else int(round_length(wanted))
+    scale = 1 if wanted < 2 else int(round_length(wanted))
+    while scale > 1 and not is_solid(grid) and turns_over(grid, scale):
+        scale = int(round_length(0.9 * scale))
+    return scale
 
 
 def positions_of(grid, scale):
@@ -257,5 +269,7 @@ def solution_panels(path):
 def solution(path):
     """One answer, of the file u.vtu: the membrane and its pressure (Niakh 2022, figure 2.4), or
     bodies, their stress and the pressure between them (figure 2.10)."""
-    return save_panels(run_of(path) / "figures", "solution.png", solution_panels(path),
-                       parameters_of(read_grid(path)))
+    panels = solution_panels(path)
+    mixed = len(panels) > 3 and not is_solid(read_grid(path))  # pictures of many shapes
+    return save_panels(run_of(path) / "figures", "solution.png", panels, parameters_of(read_grid(path)),
+                       in_columns if mixed else in_rows)

@@ -52,7 +52,7 @@ def draw(axis, modified):
         arrow(axis, snapshot, snapshot - part, ORANGE, 1.6)
         axis.annotate(r"$-\Upsilon_2$", snapshot - part / 2, (0, 5), textcoords="offset points",
                       color=ORANGE, ha="center")
-    for vector, name, way in ((first, "1", (0, -13)), (second, "2", (-10, 4))):
+    for vector, name, way in ((first, "1", (2, 5)), (second, "2", (10, -3) if modified else (-10, 4))):
         arrow(axis, (0, 0), vector, GREEN, 2.4)
         axis.annotate(rf"$\nu_{name}$", vector, way, textcoords="offset points", color=GREEN, ha="center")
     axis.set(xlim=(-0.35, 3.4), ylim=(-0.35, 2.2), aspect="equal", xlabel="first entry (-)",
@@ -65,9 +65,10 @@ def condition(modified):
 
 
 def main(png):
-    figure, _ = figure_of([Drawn(f"{name}: Gram condition {condition(modified):.0f}",
+    figure, _ = figure_of([Drawn(f"{name}: condition {condition(modified):.0f}",
                                  lambda _, axis, modified=modified: draw(axis, modified), ratio=0.9)
-                           for name, modified in (("CPG", False), ("mCPG", True))])
+                           for name, modified in (("CPG", False), ("mCPG", True))],
+                          "condition: of the Gram matrix of both generators")
     figure.savefig(png, dpi=150, bbox_inches="tight", pad_inches=0.02)
     print(f"wrote {png}")
 

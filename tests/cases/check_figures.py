@@ -19,13 +19,13 @@ sys.path[:0] = [str(ROOT / "cases"), str(ROOT / "tests/docs"), str(ROOT / "tests
 
 import figures
 from case_figures import case_panels
-from figure_tools import UNITS, is_solid, plt, read_grid, table, use_units
+from figure_tools import UNITS, Grid, is_solid, plt, read_grid, table, use_units
 from model_figures import drawn_outputs, output_panels, places_of, stress_panels
-from panels import Lines, Triangles, figure_of, shown, with_values
+from panels import Curve, Drawn, Lines, Triangles, figure_of, in_columns, shown, with_values
 from small_runs import CHECKED, RUNS
 from solid_figures import seen, skin_of, view_of
 from solid_solution import tangential_of
-from solution_figures import contact_grids, solution_panels
+from solution_figures import contact_grids, scale_of, solution_panels, turns_over
 
 # Of the force. Nitsche's method has stresses at the ends of edges alone, which do not integrate the
 # stress of elements of degree 2 exactly.
@@ -183,6 +183,7 @@ def check_answer(check, run):
         check_skin(check, grid, run.name)
     else:
         contacts = contact_grids(run / "u.vtu", grid)
+        check.that(not turns_over(grid, scale_of(grid, contacts)), f"{run.name}: a triangle is turned over")
         lines = [panel for panel in panels if isinstance(panel, Lines)]
         check.that(len(lines) == len(contacts) == len(list(run.glob("u_contact*.vtu"))),
                    f"{run.name}: {len(lines)} panels of {len(contacts)} interfaces")
@@ -298,8 +299,37 @@ def check_damage(check, run, scratch):
     check.that(names == {"solution", "bases", "outputs", "stresses", "errors"}, str(names))
 
 
+def check_scale(check):
+    """Of a square whose upper triangle is turned over from 20 times its displacement on."""
+    square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    u = np.zeros((4, 3))
+    u[3, 1] = -0.05
+    body = Grid(square, np.array([[0, 1, 2], [0, 2, 3]]), None, np.array([[0, 1, 2], [0, 2, 3]]), {"u": u}, {}, {}, {})
+    check.that(not turns_over(body, 19) and turns_over(body, 21), "what is turned over")
+    u[:] = 0
+    u[2, 0], u[3, 0], u[3, 1] = 1e-3, 1e-3, -1.5e-3
+    small = body._replace(points=square * [1, 0.01, 1])
+    check.that(scale_of(body, {}) == 20 and scale_of(small, {}) == 5, "the scale of displacements")
+
+
+def check_columns(check):
+    """Two columns, of which the shorter one's curves fill what is left."""
+    picture = Drawn("", lambda *_: None, ratio=1.5)
+    curves = Lines("", "x", "y", [Curve(np.arange(3.0), np.arange(3.0))])
+    panels = [picture, curves, curves, picture, curves]
+    figure, _ = figure_of(panels, arrange=in_columns)
+    figure.draw_without_rendering()
+    left, right = ([axis for axis in figure.axes if (axis.get_position().x0 > 0.5) == side] for side in (0, 1))
+    check.that([len(left), len(right)] == [2, 3], f"columns of {len(left)} and {len(right)} panels")
+    ends = [min(axis.get_position().y0 for axis in side) for side in (left, right)]
+    check.that(abs(ends[0] - ends[1]) < 0.05, f"columns end at {ends}")
+    plt.close(figure)
+
+
 def main(runs, scratch):
     check = Checks()
+    check_scale(check)
+    check_columns(check)
     for name in RUNS:
         check_run(check, runs / name)
     for run in sorted((runs / "answers").iterdir()):
