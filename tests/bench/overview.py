@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """overview.py BIN WORK [NAME ...]: run time against error, of every scene and formulation.
+overview.py draw: the pictures anew, of overview/points.csv.
 
-Writes tests/bench/README.md and a picture for each scene beside it, from runs in WORK, where those
-that are there already are taken. With names: these alone, as tables on the screen.
+Writes tests/bench/README.md, and into overview beside it a picture for each scene and the table of their
+marks, from runs in WORK, where those that are there already are taken. With names: these alone, as tables
+on the screen.
 
 - full solves: each method of rbvi bench on the default mesh; the best one on this mesh and finer ones
   against the finest, by energy and normal force at three of the training parameters;
@@ -11,7 +13,6 @@ that are there already are taken. With names: these alone, as tables on the scre
 """
 
 import csv
-import math
 import os
 import subprocess
 import sys
@@ -19,9 +20,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+FOLDER = ROOT / "tests/bench/overview"
 sys.path.insert(0, str(ROOT / "cases"))
 
-from figure_tools import BLUE, FLOOR, GREEN, GREY, ORANGE, PURPLE, np, plt
+from bench_figures import KINDS, number, pareto
+from figure_tools import BLUE, FLOOR, np, plt, whole_decades
+from panels import Curve, Lines, figure_of
 
 DISK = "rigid_disk"
 NITSCHE = ("-variant", "nitsche")
@@ -83,10 +87,6 @@ def called(log, *command, allowed=(0,)):
 def rows_of(path):
     with open(path, encoding="utf-8", newline="") as table:
         return list(csv.DictReader(table))
-
-
-def number(text):
-    return float(text) if text else math.nan
 
 
 def folder_of(run):
@@ -171,37 +171,88 @@ def table(results):
     return "".join("| " + " | ".join(line) + " |\n" for line in lines)
 
 
-KINDS = (("reduced", BLUE, "o"), ("multilinear", ORANGE, "D"), ("interpolation", ORANGE, "D"),
-         ("active_set", GREEN, "s"), ("nitsche", PURPLE, "s"), ("uzawa", GREY, "^"), ("vi", GREY, "v"))
+MARKS = ("o", "P", "*", "h", "X")  # of the models of a scene, one for each run
 
 
-def draw(scene, results, path):
-    """Outputs: the marks of all runs of a scene, the Pareto front, the error of the mesh."""
-    figure, axis = plt.subplots(figsize=(6.4, 4.2), constrained_layout=True)
-    points, named = [], set()
-    for index, (run, (rows, _, levels)) in enumerate(results.items()):
-        for row in rows:
-            if not row["outputs_max"]:
-                continue
-            kind = next((k for k in KINDS if row["method"].startswith(k[0])), None)
-            time, error = number(row["median_ms"]), max(number(row["outputs_max"]), FLOOR)
-            label = f"{kind[0]}, {run.name}" if kind[0] == "reduced" else kind[0]
-            axis.plot(time, error, kind[2], color=kind[1], fillstyle=("full", "none", "left")[index % 3],
-                      label="" if label in named else label)
-            named.add(label)
-            points.append((time, error))
-        x, y = zip(*levels)
-        axis.plot(x, y, "x--", color=GREEN if index == 0 else PURPLE, linewidth=0.8,
-                  label=f"full solves over meshes, {run.name}")
-    points.sort()
-    front = [p for i, p in enumerate(points) if all(p[1] < q[1] for q in points[:i])]
-    axis.step([p[0] for p in front], [p[1] for p in front], where="post", color="black",
-              linewidth=0.9, label="Pareto front")
-    axis.set(xscale="log", yscale="log", xlabel="median time of an answer (ms)",
-             ylabel="largest error of the outputs (-)", title=scene)
-    axis.legend(fontsize=6.5, loc="center left", bbox_to_anchor=(1.01, 0.5))
-    figure.savefig(path, dpi=110)
+@dataclass(frozen=True)
+class Point:
+    """A mark of a picture."""
+    scene: str
+    run: str
+    method: str  # as rbvi bench calls it; MESH of a full solve against a finer mesh
+    ms: float
+    error: float
+
+
+MESH = "mesh"
+
+
+def points_of(results):
+    found = []
+    for run, (rows, _, levels) in results.items():
+        found += [Point(run.scene, run.name, row["method"], number(row["median_ms"]), number(row["outputs_max"]))
+                  for row in rows if row["outputs_max"]]
+        found += [Point(run.scene, run.name, MESH, ms, error) for ms, error in levels]
+    return found
+
+
+def curve_of(points, label, colour, style):
+    return Curve(np.array([point.ms for point in points]), np.array([max(point.error, FLOOR) for point in points]),
+                 label, colour, style, width=0.9)
+
+
+def kind_of(point):
+    """The beginning of a method that bench_figures knows, its words, colour and mark."""
+    return next(kind for kind in KINDS if point.method.startswith(kind[0]))
+
+
+def panel(scene, points):
+    """Errors of the outputs over time: the answers of all runs of a scene, the Pareto front, and the error of the
+    mesh."""
+    answers = [point for point in points if point.method != MESH]
+    models = [point for point in answers if kind_of(point)[0] == "reduced"]
+    curves = []
+    for label, colour, mark in dict.fromkeys(kind_of(point)[1:] for point in answers if point not in models):
+        curves.append(curve_of([point for point in answers if kind_of(point)[1] == label], label, colour, mark))
+    runs = list(dict.fromkeys(point.run for point in models))
+    for run, mark in zip(runs, MARKS):
+        curves.append(curve_of([point for point in models if point.run == run], f"model: {run}", BLUE, mark))
+    for k, run in enumerate(dict.fromkeys(point.run for point in points)):
+        curves.append(curve_of([point for point in points if (point.run, point.method) == (run, MESH)],
+                               "" if k else "full solves over meshes", "black", "x:"))
+    front = [answers[k] for k in pareto(*np.array([(point.ms, point.error) for point in answers]).T)]
+    steps = [Point(scene, "", "", later.ms, before.error) for before, later in zip(front, front[1:])]
+    curves.append(curve_of([point for pair in zip(front, [*steps, None]) for point in pair if point],
+                           "Pareto front", "black", "-"))
+    return Lines(scene.replace("_", " "), "median time of an answer (ms)", "largest error of the outputs (-)", curves,
+                 log=True, log_x=True, floor=FLOOR)
+
+
+def draw(scene, points, path):
+    figure, failed = figure_of([panel(scene, points)])
+    whole_decades(figure.axes[0])
+    figure.savefig(path, dpi=150, bbox_inches="tight", pad_inches=0.02)
     plt.close(figure)
+    if failed:
+        sys.exit("\n".join(failed))
+
+
+def draw_all(points, folder):
+    for scene in dict.fromkeys(point.scene for point in points):
+        draw(scene, [point for point in points if point.scene == scene], folder / f"{scene}.png")
+
+
+def stored(path):
+    return [Point(row["scene"], row["run"], row["method"], number(row["ms"]), number(row["error"]))
+            for row in rows_of(path)]
+
+
+def store(points, path):
+    with open(path, "w", encoding="utf-8", newline="") as table:
+        writer = csv.writer(table, lineterminator="\n")
+        writer.writerow(["scene", "run", "method", "ms", "error"])
+        writer.writerows([point.scene, point.run, point.method, f"{point.ms:.4g}", f"{point.error:.3g}"]
+                         for point in points)
 
 
 PAGE = """# Run time against error, of every scene and formulation
@@ -219,7 +270,8 @@ scene by scene ([tests](../README.md#benchmarks)).
 
 {table}
 Where the error of a model is below that of its mesh, a finer mesh improves the answer and a larger model does not:
-crosses in the pictures are full solves on the default mesh and finer ones, against the finest.
+crosses in the pictures are full solves on the default mesh and finer ones, against the finest. The marks of the
+pictures are in `overview/points.csv`; `overview.py draw` draws them anew.
 
 {pictures}
 """
@@ -238,12 +290,10 @@ def main(binaries, work, *names):
     if names:
         print(made)
         return
-    folder = ROOT / "tests/bench/overview"
-    folder.mkdir(exist_ok=True)
+    FOLDER.mkdir(exist_ok=True)
+    store(points_of(results), FOLDER / "points.csv")
+    draw_all(stored(FOLDER / "points.csv"), FOLDER)
     scenes = list(dict.fromkeys(run.scene for run in chosen))
-    for scene in scenes:
-        draw(scene, {run: results[run] for run in chosen if run.scene == scene},
-             folder / f"{scene}.png")
     commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True,
                             text=True, check=True).stdout.strip()
     (ROOT / "tests/bench/README.md").write_text(
@@ -253,4 +303,7 @@ def main(binaries, work, *names):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    if sys.argv[1:] == ["draw"]:
+        draw_all(stored(FOLDER / "points.csv"), FOLDER)
+    else:
+        main(*sys.argv[1:])

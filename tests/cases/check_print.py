@@ -3,7 +3,7 @@
 
 RUNS is of tests/docs/small_runs.py. Text has 6 points or more, no two texts overlap, none is cut, no
 axes are empty, and labels of physical quantities have their unit. One run of each kind is drawn,
-and all of them side by side.
+and all of them side by side, and the picture of the bench page of one.
 """
 
 import sys
@@ -11,12 +11,14 @@ from itertools import combinations
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "cases"), str(ROOT / "tests/docs")]
+sys.path[:0] = [str(ROOT / "cases"), str(ROOT / "tests/docs"), str(ROOT / "tests/bench")]
 
 import figure_tools
 import figures
+import overview
 from matplotlib.text import Text
 from figure_tools import declared_units
+from panels import figure_of
 from small_runs import CHECKED, HAS_SOLIDS
 
 COLUMN = 88 / 25.4  # inches
@@ -90,6 +92,19 @@ def problems(figure, units):
     return found + [f"no unit: {label!r}" for axis in figure.axes for label in wrong_units(axis) if units]
 
 
+def overview_of(run):
+    """The picture of the bench page, of a run that rbvi bench measured; and what its marks lack."""
+    rows = [row for row in overview.rows_of(run / "bench/table.csv") if row["outputs_max"]]
+    which = next(one for one in overview.RUNS if one.scene == run.name)
+    points = overview.points_of({which: (rows, "", [(1, 1e-3), (8, 1e-4)])})
+    panel = overview.panel(run.name, points)
+    marks = sum(len(curve.y) for curve in panel.curves if curve.style not in ("-", "x:"))
+    front = panel.curves[-1].y
+    lacks = [] if marks == len(rows) > 5 and all(later <= before for before, later in zip(front, front[1:])) else [
+        f"overview of {run.name}: {marks} marks of {len(rows)} rows, front {front}"]
+    return figure_of([panel])[0], lacks
+
+
 def main(runs):
     wrong, count = [], 0
 
@@ -103,6 +118,9 @@ def main(runs):
     for run in [*(runs / name for name in RUNS), *(runs / "checks" / name / "u.vtu" for name in CHECKED)]:
         figures.main([str(run)])
     figures.main([str(runs / name) for name in RUNS])
+    figure, lacks = overview_of(runs / "two_disks")
+    measure(figure, runs / "two_disks/figures/overview.png")
+    wrong += lacks
     print("\n".join(wrong) or f"{count} figures can be printed")
     return 1 if wrong or count < 40 else 0
 
