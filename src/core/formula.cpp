@@ -140,9 +140,18 @@ void check_names(const Formula &formula, const std::vector<std::string> &allowed
     (void)bound_to(value, names, {});
 }
 
+/// Whether an operation keeps what is smooth so: of others no few points tell what they are.
+bool is_rational(Operation operation) {
+  using enum Operation;
+  return operation == number || operation == name || operation == negate || operation == add ||
+         operation == subtract || operation == multiply || operation == divide;
+}
+
 /// f(0) and f' of an expression in one name that is affine.
 std::optional<std::pair<double, double>> affine_of(const Expression &whole) {
-  if (whole.free_names().size() != 1) return std::nullopt;
+  if (whole.free_names().size() != 1 ||
+      !std::ranges::all_of(whole.program(), is_rational, &Instruction::operation))
+    return std::nullopt;
   const BoundExpression bound = bound_to(whole, whole.free_names());
   double at_zero = 0, slope = 0;
   const double zero = 0;

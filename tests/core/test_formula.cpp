@@ -45,6 +45,16 @@ TEST(Formula, HasTheValuesOfItsExpressions) {
   EXPECT_EQ(t(mu, x, n), (Point{1.2, 3.2, 7}));
 }
 
+/// What bends or jumps where nobody looks is not taken for a straight line.
+TEST(Formula, KinksAndJumpsAreNotAffine) {
+  for (const char *text : {"min(a, 5000)", "max(a, 2000)", "a == 2500 ? 1 : 30",
+                           "a > 2000 and a < 3000 ? 1 : 30", "abs(a + 5000)", "floor(a/1e6)"}) {
+    const auto value = coefficient_of(formula({text}));
+    for (const double a : {-8000.0, 0.0, 2500.0, 8000.0, 2e6})
+      EXPECT_EQ(value({a, 3, 5}), bound_to(parsed(text), {"a"}).value(&a)) << text << a;
+  }
+}
+
 TEST(Formula, DependsOnWhatItsLetsUse) {
   EXPECT_EQ(dependence_of(formula({"scale"})), (std::vector<int>{2}));
   EXPECT_EQ(dependence_of(formula({"b", "r + a"})), (std::vector<int>{0, 1}));
