@@ -20,8 +20,18 @@ namespace {
 constexpr std::size_t most_axes = 2; ///< parameters of A beside its common coefficient
 constexpr double dependent = 1e-13;  ///< what is left of a representer among the others
 
+/// Both ends; of a choice all values but that in the middle.
+std::vector<double> beside_middle(const Parameter &of) {
+  if (of.choices.empty()) return {of.lower, of.upper};
+  std::vector<double> others;
+  for (double value = of.lower; value <= of.upper; ++value)
+    if (value != taken(of, (of.lower + of.upper) / 2)) others.push_back(value);
+  return others;
+}
+
 /// The ends and the middle, in its coordinate, of each parameter that A depends on beside its
-/// common coefficient; the others in the middle. The middle of all comes first.
+/// common coefficient, of a choice all its values; the others in the middle. The middle of all
+/// comes first.
 std::vector<Mu> reference_parameters(const Scene &scene) {
   std::vector<Mu> points{box_centre(scene.parameters)};
   for (const int parameter : parameters_beside_common(scene.a, scene.parameters)) {
@@ -29,7 +39,7 @@ std::vector<Mu> reference_parameters(const Scene &scene) {
     const auto place = std::ranges::find(free, parameter) - free.begin();
     const Parameter &of = scene.parameters.all[parameter];
     const std::vector<Mu> before = points;
-    for (const double value : {of.lower, of.upper})
+    for (const double value : beside_middle(of))
       for (Mu mu : before) {
         mu[place] = value;
         points.push_back(std::move(mu));
