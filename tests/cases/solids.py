@@ -70,7 +70,7 @@ def bent_ball(folder):
     folder.mkdir(parents=True, exist_ok=True)
     shutil.copy(CASES / "rigid_ball/half_ball.geo", folder)
     text = (CASES / "rigid_ball/case.yaml").read_text(encoding="utf-8")
-    rigid, bent = "ux: shear, uy: 0, uz: -indentation", "ux: shear*(1 + x), uy: 0.5*shear*y, uz: -indentation*(1 + 0.3*x)"
+    rigid, bent = "ux: shear, uy: 0, uz: -indentation", "ux: shear*(1 + x/1), uy: 0.5*shear*y/1, uz: -indentation*(1 + 0.3*x)"
     if rigid not in text:
         sys.exit("the flat side of rigid_ball is imposed in other words")
     (folder / "case.yaml").write_text(text.replace(rigid, bent), encoding="utf-8")
