@@ -50,16 +50,6 @@ void check_names(const Reader &reader, const CaseNode &node, const std::vector<s
   });
 }
 
-/// Whether an expression may be this name alone.
-bool is_name(const std::string &text) {
-  try {
-    const Expression whole = parse_expression(text);
-    return whole.program().size() == 1 && whole.free_names() == std::vector{text};
-  } catch (const Error &) {
-    return false;
-  }
-}
-
 /// "contact.*.friction" -> "contact: friction"
 std::string in_words(const std::string &table) {
   std::vector<std::string> names;

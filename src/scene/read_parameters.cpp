@@ -4,7 +4,6 @@
 #include "rbvi/core/validity.hpp"
 
 #include <algorithm>
-#include <cctype>
 
 namespace rbvi {
 
@@ -31,11 +30,8 @@ Parameter choice_in(const std::string &name, const CaseNode &node, const CaseNod
     if (node.find(of_numbers) != nullptr)
       throw bad_input(name + " has values: it has no '" + std::string(of_numbers) + "'");
   parameter.choices = names_in(values);
-  const auto is_name = [](const std::string &text) {
-    return std::isalpha(static_cast<unsigned char>(text[0])) != 0 &&
-           text.find_first_of(" .-+*/()") == std::string::npos;
-  };
-  if (parameter.choices.size() < 2 || !std::ranges::all_of(parameter.choices, is_name))
+  const auto is_own = [](const std::string &text) { return is_name(text) && !is_coordinate(text); };
+  if (parameter.choices.size() < 2 || !std::ranges::all_of(parameter.choices, is_own))
     throw bad_input("the values of " + name + " are names, two at least: [steel, brass]");
   parameter.value = parse_value(parameter, entry(node, "default").value, "the default of " + name);
   parameter.upper = static_cast<double>(parameter.choices.size() - 1);

@@ -32,6 +32,15 @@ Expression expression_in(const Reader &reader, const CaseNode &node) {
   }
 }
 
+bool is_name(const std::string &text) {
+  try {
+    const Expression whole = parse_expression(text);
+    return whole.program().size() == 1 && whole.free_names() == std::vector{text};
+  } catch (const Error &) {
+    return false;
+  }
+}
+
 bool is_constant(const CaseNode &parameter) {
   return parameter.find("range") == nullptr && parameter.find("values") == nullptr;
 }

@@ -60,6 +60,8 @@ const CaseNode &entry(const CaseNode &table, const std::string &name);
 /// What is this value by itself, a parameter or a constant, cannot leave the range.
 void limit(Reader &reader, const Expression &value, const Range &range, Scene &scene);
 
+/// Whether an expression may be this name alone: not pi, and, a number.
+bool is_name(const std::string &text);
 /// Whether a parameter has one value, neither a range nor a choice.
 bool is_constant(const CaseNode &parameter);
 /// That of the numbers of a parameter: its `unit`, else that of the first of them that has one.

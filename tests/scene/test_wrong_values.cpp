@@ -57,6 +57,8 @@ TEST(WrongCase, Parameters) {
       {k("values: [one, two], default: one, range: [0, 1]"), "k has values: it has no 'range'"},
       {k("values: [one], default: one"), "names, two at least"},
       {k("values: [1, 2], default: 1"), "names, two at least"},
+      {k("values: [pi, old], default: old"), "names, two at least"},
+      {k("values: [x, old], default: old"), "names, two at least"},
       {k("values: [young, old], default: old"), "there is a parameter 'young' already"},
       {k("range: [1, 2], default: 1.5, spacing: cubic"), "use one of linear, log"},
       {k("range: [-1, 2], default: 1, spacing: log"), "is not positive"},
